@@ -35,8 +35,7 @@ class LoadAndCoefficient:
 
     They are those of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static divided by
     sliding friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a
-    function takes
-    other arguments; in a run, if a function returns an invalid number.
+    function takes other arguments; in a run, if a function returns an invalid number.
     """
 
     def __init__(

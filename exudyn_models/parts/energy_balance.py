@@ -99,11 +99,13 @@ def add_energy_balance(
     Raises
     ------
     ValueError
-        If ``unit`` is not > 0, a name is both a gain and a loss, or a ``spring_energy`` refers to an object without
-        potential energy.
+        If ``unit`` is not > 0, there is neither a gain nor a loss, a name is both, or a ``spring_energy`` refers to
+        an object without potential energy.
 
     """
     unit = positive_number("unit", unit, "J")
+    if not gains and not losses:
+        raise ValueError("gains and losses are both empty: an energy balance needs at least one power")
     for name in gains:
         if name in losses:
             raise ValueError(f"{name!r} names both a gain and a loss; use two names")

@@ -70,8 +70,7 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     μN) for a disc. In stick phases it is the work of the holding force and moment of eq. 6 on the engine's creep. The
     drive's work is ω times the angular impulse on the body about the axis, ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y
     dt + b∫(φ̇ − Ω)dt, where C is the force of the support divided by its deflection. So the residual shows errors in
-    any
-    force, and whether the integrator conserves energy.
+    any force, and whether the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
     sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` for a single time.

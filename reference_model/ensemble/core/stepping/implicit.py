@@ -211,8 +211,7 @@ def stride_with(
     """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
     ``start`` (2 or 3,) is the initial slip, ``guess`` the slip soon after. Returns position, slip, angle, duration
-    (zero
-    if the step is not worthwhile), slip distance and the proposed next step.
+    (zero if the step is not worthwhile), slip distance and the proposed next step.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
