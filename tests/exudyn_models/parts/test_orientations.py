@@ -24,7 +24,7 @@ POINTS = LAW | {"contact_radius": 0.12, "contact_points": 4}  # a quarter turn m
 
 
 def motion(node, master_axes, disc_axes):
-    """Return positions, velocities and angular velocities of both bodies at 0.05 s, in the master's first axes."""
+    """Return positions, velocities and angular velocities of both bodies at 0.1 s, in the master's first axes."""
     mbs = new_model()
     master = [0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0]
     disc = [0.15, 0.18, 0.3], [-0.2, 0.3, 0.0], [0.0, 0.0, -1.0]
@@ -36,7 +36,7 @@ def motion(node, master_axes, disc_axes):
         )
     ]
     add_ring_friction(mbs, *bodies, **POINTS)
-    settings = settings_of(0.05, 5, newton=1e-12)
+    settings = settings_of(0.1, 10, newton=1e-12)
     solve_dynamic(mbs, settings, exu.DynamicSolverType.TrapezoidalIndex2)
     kinds = exu.OutputVariableType
     quantities = kinds.Position, kinds.Velocity, kinds.AngularVelocity
