@@ -159,43 +159,6 @@ def test_a_mounted_contact_has_the_jacobian_that_exudyn_finds_by_differences(kin
     assert_jacobian_is_that_of_exudyn(mbs, friction.item)
 
 
-PIVOT = {"contact_radius": 0.01, "friction_coefficient": 0.2, "normal_load": 500.0}
-"""A bearing with a friction moment of 1 N m."""
-
-
-@pytest.mark.parametrize(
-    ("kind", "regularisation"),
-    [*product(("planar", *SPATIAL), [None]), ("planar", 1e-4), ("Euler parameters", 1e-4)],
-)
-def test_a_rod_in_a_bearing_at_its_end_stops_at_the_exact_time(kind, regularisation):
-    """A rod of 2 kg and 0.1 kg m² turns at 3 rad/s about a bearing 0.4 m from its centre, far from the origin."""
-    mbs, pivot, arm, tilt = new_model(), np.array([1.0, 2.0, 0.0]), np.array([-0.4, 0.0, 0.0]), 0.7
-    turned = rotations.RotationMatrixZ(tilt)
-    centre, velocity = pivot - turned @ arm, np.cross([0.0, 0.0, 3.0], -turned @ arm)
-    if kind == "planar":
-        planar_body(mbs, 2.0, 0.1, [*centre[:2], tilt], [*velocity[:2], 3.0])
-        rod = exu.ObjectIndex(0)
-    else:
-        rod = body_of(mbs, kind, turned, centre, velocity, [0.0, 0.0, 3.0], mass=2.0, inertia=0.1)
-    ground = mbs.AddObject(items.ObjectGround(referencePosition=pivot))
-    markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)), marker_on(mbs, rod, arm)]
-    held = [1, 1, 0, 0, 0, 0] if kind == "planar" else [1, 1, 1, 1, 1, 0]
-    mbs.AddObject(items.GenericJoint(markerNumbers=markers, constrainedAxes=held))
-    bearing = add_ring_friction(mbs, *markers, **PIVOT, regularisation=regularisation)
-    spin = bearing.add_sensor("relative_spin")
-    stops = 3.0 * (0.1 + 2.0 * 0.4**2)  # s at 1 N m
-    changes = solve_dynamic(mbs, settings_of(1.5, 300, newton=1e-10), IMPLICIT)
-    assert abs(mbs.GetSensorValues(spin)) < 1e-6
-    turns = 3.0 * stops / 2.0
-    place = mbs.GetObjectOutputBody(rod, OUT.Position)
-    expected = pivot - rotations.RotationMatrixZ(turns) @ turned @ arm
-    np.testing.assert_allclose(place, expected, rtol=0.0, atol=1e-3 if regularisation else 1e-4)
-    if regularisation is None:
-        assert [(change.time, int(change.after)) for change in changes] == [
-            (pytest.approx(stops, abs=1e-4), 0)
-        ]
-
-
 WHEEL = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 800.0}
 """A brake of 24 N m."""
 X = rotations.RotationMatrixY(np.pi / 2.0)
