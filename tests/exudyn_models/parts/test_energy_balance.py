@@ -79,6 +79,13 @@ def test_works_and_energy_match_the_closed_form_and_the_residual_shows_missing_p
         np.testing.assert_allclose(balance.residual, missing, atol=1e-12)
 
 
+@pytest.mark.parametrize(("share", "is_off"), [(0.9e-6, False), (1.1e-6, True)])
+def test_a_millionth_of_the_turnover_is_an_imbalance(share, is_off):
+    times, stored = np.array([0.0, 1.0]), np.array([0.0, 5.0 * (1.0 - share)])
+    balance = EnergyBalance(times, {"drive": np.array([0.0, 5.0])}, {}, stored)
+    assert bool(balance.imbalance) == is_off
+
+
 def test_rounding_of_a_heavy_flywheel_is_not_an_imbalance():
     stored = np.array([1e18, 1e18 + 128.0])
     heavy = EnergyBalance(np.array([0.0, 1.0]), {"drive": np.array([0.0, 1.0])}, {}, stored)

@@ -65,7 +65,7 @@ def engine_of(file):
 def right(packed, request):
     if request.param == 3:
         return engine_of(packed("right3", 3))
-    fixed_step = (("stopTime=", 'stepSize="0.002" stopTime='),)
+    fixed_step = (("stopTime=", 'stepSize="0.01" stopTime='),)
     return engine_of(packed("right2", changes=fixed_step, stick_count="count"))
 
 
@@ -85,7 +85,7 @@ def test_an_fmu_that_exchanges_two_parameters_differs(packed):
 
 def test_the_variables_of_an_fmu_determine_its_abilities(right, packed):
     assert (right.kinds, right.nonlinear) == (("pin",), True)
-    assert (right.phases, right.step) == ((False, 2e-3) if right.name == "right2" else (True, None))
+    assert (right.phases, right.step) == ((False, 1e-2) if right.name == "right2" else (True, None))
     linear = engine_of(packed("linear", hardening="other"))
     assert linear.lacking([FIG11, replace(FIG5, hardening=1.0)]).endswith(
         "a disc on a continuous ring or a pin on a nonlinear support"
