@@ -5,7 +5,6 @@ Below ε it is viscous.
 """
 
 import ctypes
-import itertools
 
 import mpmath
 import numpy as np
@@ -79,26 +78,14 @@ def exact(u, w):
         return (e + k) / (mpmath.pi * u), (e - k) / (mpmath.pi * w)
 
 
-def points():
-    """Yield slip speeds of centre and rim: edge cases, and ratios over twenty decades."""
-    random = np.random.default_rng(20)
-    ratios = np.concatenate(
-        (10.0 ** random.uniform(-10.0, 0.0, 150), 1.0 - 10.0 ** random.uniform(-15.5, -0.3, 150))
-    )
-    edges = [0.0, 1e-300, 1e-9, 1e-7, 0.5, 1.0, np.nextafter(1.0, 0.0)]
-    sizes = 10.0 ** random.uniform(-9.0, 3.0, ratios.size)
-    for ratio, size in itertools.chain(zip(ratios, sizes, strict=True), ((edge, 1.0) for edge in edges)):
-        yield float(size), float(ratio * size)
-        yield float(ratio * size), float(size)
-
-
 def test_friction_of_the_ring_is_accurate_to_thirteen_digits(law):
-    for u, w in points():
-        found, expected = slopes(law, u, w), exact(u, w)
-        assert all(abs(one - float(other)) <= 1e-13 for one, other in zip(found, expected, strict=True)), (
-            u,
-            w,
-        )
+    random = np.random.default_rng(20)
+    far, near = 10.0 ** random.uniform(-10.0, 0.0, 150), 1.0 - 10.0 ** random.uniform(-15.5, -0.3, 150)
+    ratios = [0.0, 1e-300, 1e-9, 1e-7, 0.5, 1.0, np.nextafter(1.0, 0.0), *far, *near]
+    for ratio, size in zip(ratios, 10.0 ** random.uniform(-9.0, 3.0, len(ratios)), strict=True):
+        for u, w in ((size, ratio * size), (ratio * size, size)):
+            found, expected = slopes(law, u, w), [float(one) for one in exact(u, w)]
+            np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13, err_msg=f"{u} {w}")
 
 
 def force(law, contact, slip):
