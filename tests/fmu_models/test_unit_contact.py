@@ -170,29 +170,6 @@ def test_friction_of_an_annulus_is_the_sum_over_its_points(law, contact, share, 
     np.testing.assert_allclose(force(law, contact, slip)[0], expected, atol=accuracy)
 
 
-@EVERY
-@pytest.mark.parametrize("size", [0.2, 1.5, 30.0])
-def test_tangents_are_derivatives_in_creep_at_the_peak_and_in_slip(law, contact, size):
-    slip, way = np.array([0.6, -0.5, 4.0]) * size * contact.epsilon, np.array([0.3, 0.7, -2.0])
-    turn, step = 0.4 / (size * contact.epsilon), 1e-6 * size * contact.epsilon
-    ahead, behind = (
-        force(law, turned(contact, sign * step * turn), slip + sign * step * way) for sign in (1.0, -1.0)
-    )
-    found = Three()
-    potential = law.friction_tangent(
-        ctypes.byref(contact), Three(*slip), Three(*way), *floats(0.0, turn), found
-    )
-    expected = (ahead[0] - behind[0]) / (2.0 * step)
-    np.testing.assert_allclose(found, expected, atol=2e-7 * np.abs(expected).max())
-    assert potential == pytest.approx((ahead[1] - behind[1]) / (2.0 * step), rel=1e-6)
-
-
-def turned(contact, angle):
-    found = Contact.from_buffer_copy(contact)
-    found.angle += angle
-    return found
-
-
 @pytest.mark.parametrize("contact", [PIN, RING, ANNULUS, WORN, TAPERED])
 def test_held_loads_lie_on_the_limit_surface(law, contact):
     for slip in ((0.3, 0.0, 1.0), (0.02, 0.0, -5.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)):

@@ -163,23 +163,23 @@ CLUTCH = {
     "engagement": 0.9,
 }
 CLUTCH |= {"regularisation": 0.1, "static_ratio": 1.2, "plates": 3.0}
+FACES = {"inner_radius": 0.07, "pressure_outer": 0.5}
 CASES = {
     "pin slips": lambda instance: started(instance, replace(FIG5, hardening=3.0), (0.3, -0.2, 0.03, 0.1)),
     "pin sticks": lambda instance: inside(started(instance, FIG5, WHIRL), STICKS),
     "pin leaves": lambda instance: inside(started(instance, FIG5, WHIRL), LEAVES),
-    "disc slips": lambda instance: instance(
-        "disc", x=0.05, y=-0.02, spin=1.6, stop_gap=0.01, stop_stiffness=5.0
-    ).started(),
-    "points slip": lambda instance: instance("disc", vx=0.03, spin=1.6, **POINTS).started(),
-    # Two points slip, and three are below regularisation.
-    "points creep": lambda instance: instance("disc", vx=0.0302, vy=0.075, spin=1.51, **POINTS).started(),
-    "clutch slips": lambda instance: instance("clutch", speed_b=30.0, inner_radius=0.07, **CLUTCH).started(),
-    "clutch creeps": lambda instance: instance(
-        "clutch", speed_b=20.01, inner_radius=0.07, **CLUTCH
-    ).started(),
-    "clutch points": lambda instance: instance(
-        "clutch", speed_b=21.5, contact_points=5.0, angle_b=0.3, **CLUTCH
-    ).started(),
+} | {
+    name: lambda instance, model=model, values=values: instance(model, **values).started()
+    for name, model, values in (
+        ("disc slips", "disc", {"x": 0.05, "y": -0.02, "spin": 1.6, "stop_gap": 0.01, "stop_stiffness": 5.0}),
+        ("points slip", "disc", POINTS | {"vx": 0.03, "spin": 1.6}),
+        # Two points slip, and three are below regularisation.
+        ("points creep", "disc", POINTS | {"vx": 0.0302, "vy": 0.075, "spin": 1.51}),
+        ("clutch slips", "clutch", CLUTCH | FACES | {"speed_b": 30.0}),
+        ("clutch falls from its peak", "clutch", CLUTCH | FACES | {"speed_b": 21.5}),
+        ("clutch creeps", "clutch", CLUTCH | FACES | {"speed_b": 20.01, "wear": 1.0}),
+        ("clutch points", "clutch", CLUTCH | {"speed_b": 21.5, "contact_points": 5.0, "angle_b": 0.3}),
+    )
 }
 
 
