@@ -91,7 +91,7 @@ def test_invalid_inputs_are_errors_that_the_importer_logs(unit, tmp_path, capsys
     fmpy = pytest.importorskip("fmpy")
     file = str(unit("clutch", fmi))
     description = fmpy.read_model_description(file)
-    # FMPy hands all messages to the logger that came last, so another one would have to live for ever.
+    # FMPy passes all messages to the logger it was given last, so a logger of this test would crash later ones.
     instance = fmpy.instantiate_fmu(fmpy.extract(file, tmp_path), description, "CoSimulation")
     if fmi == 2:
         instance.setupExperiment()

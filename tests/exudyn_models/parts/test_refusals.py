@@ -130,36 +130,35 @@ PARTS = {
     "native friction": (*NATIVE, "master_node", "Node1D or NodeRigidBody2D"),
     "support": (*SUPPORT, "base_node", f"Node1D, {KINDS}$"),
 }
+UNKNOWN_BODIES = {
+    exu.NodeIndex(7): "7 does not exist: this model has 3 nodes",
+    exu.NodeIndex(): "-1 does not exist: this model has 3 nodes",
+    exu.ObjectIndex(7): "7 does not exist: this model has 3 objects",
+    exu.MarkerIndex(1): "1 does not exist: this model has 0 markers",
+    1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
+    "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
+    exu.ObjectIndex(2): "2 is an ObjectMassPoint: it must be a body with a node",
+}
 
 
 @pytest.mark.parametrize("part", PARTS)
-@pytest.mark.parametrize("is_disc", [False, True])
-def test_nodes(part, is_disc):
+def test_nodes(part):
     add, right, master_name, kinds = PARTS[part]
     mbs = new_model()
-    nodes = [rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)]
-    name = "disc_node" if is_disc else master_name
-    mass = mbs.AddObject(items.ObjectMassPoint(nodeNumber=mbs.AddNode(items.NodePoint())))
-    refused = {
-        exu.NodeIndex(7): "7 does not exist: this model has 3 nodes",
-        exu.NodeIndex(): "-1 does not exist: this model has 3 nodes",
-        exu.ObjectIndex(7): "7 does not exist: this model has 3 objects",
-        exu.MarkerIndex(1): "1 does not exist: this model has 0 markers",
-        1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
-        "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
-        mass: "",
-    }
-    if not is_disc:
-        refused[exu.NodeIndex(2)] = f"2 is a NodePoint: it must be a {kinds}"
-    elif part != "native friction":
-        refused[None] = "= None is of type NoneType"
-    for index, message in refused.items():
-        pair = [nodes[0], index] if is_disc else [index, nodes[1]]
+    master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    point = mbs.AddNode(items.NodePoint())
+    mbs.AddObject(items.ObjectMassPoint(nodeNumber=point))
+    wrong = [(master_name, index, disc, message) for index, message in UNKNOWN_BODIES.items()]
+    wrong += [("disc_node", master, index, message) for index, message in UNKNOWN_BODIES.items()]
+    wrong += [(master_name, point, disc, f"2 is a NodePoint: it must be a {kinds}")]
+    wrong += [
+        ("disc_node", disc, same, f"1 is also the {master_name}") for same in (disc, exu.ObjectIndex(1))
+    ]
+    if part != "native friction":
+        wrong += [("disc_node", master, None, "= None is of type NoneType")]
+    for name, first, second, message in wrong:
         with pytest.raises(ValueError, match=f"^{name} {message}"):
-            add(mbs, *pair, **right)
-    for same in (nodes[1], exu.ObjectIndex(1)):
-        with pytest.raises(ValueError, match=f"disc_node 1 is also the {master_name}"):
-            add(mbs, nodes[1], same, **right)
+            add(mbs, first, second, **right)
 
 
 def test_objects_without_potential_energy():
