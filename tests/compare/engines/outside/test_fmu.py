@@ -13,6 +13,8 @@ import pytest
 pytest.importorskip("fmpy", reason="FMPy is not installed")
 pytest.importorskip("fmpy.fmi3")
 
+from fmpy.fmi2 import FMU2Slave
+
 from compare.claims.claim import Verdict
 from compare.claims.parameters import FIG5, FIG11
 from compare.engines import UnsupportedSystemError, engines
@@ -25,6 +27,7 @@ from reference_model.systems import COLUMNS
 
 START = (0.9, 0.0, 0.0, 0.9)
 DESCRIPTION = "modelDescription.xml"
+STEP = (("stopTime=", 'stepSize="0.01" stopTime='),)
 
 
 @pytest.fixture(scope="session")
@@ -36,7 +39,9 @@ def packed(tmp_path_factory):
 
     @functools.cache
     def exported(fmi):
-        export(PIN, folder / f"pin{fmi}.fmu", fmi)
+        with pytest.MonkeyPatch.context() as patch:  # optimising takes longer than the tests
+            patch.setattr(archive, "OPTIONS", tuple(one for one in archive.OPTIONS if one != "-O2"))
+            export(PIN, folder / f"pin{fmi}.fmu", fmi)
         with zipfile.ZipFile(folder / f"pin{fmi}.fmu") as unit:
             return {name: unit.read(name) for name in unit.namelist()}
 
@@ -65,8 +70,7 @@ def engine_of(file):
 def right(packed, request):
     if request.param == 3:
         return engine_of(packed("right3", 3))
-    fixed_step = (("stopTime=", 'stepSize="0.01" stopTime='),)
-    return engine_of(packed("right2", changes=fixed_step, stick_count="count"))
+    return engine_of(packed("right2", changes=STEP, stick_count="count"))
 
 
 def moves(engine):
@@ -118,6 +122,25 @@ def test_a_motion_does_not_depend_on_its_start_time(right):
     found = [right.simulate(FIG5, START, shift + times).states for shift in (0.0, 0.0, 8.0)]
     np.testing.assert_array_equal(found[1], found[0])
     np.testing.assert_allclose(found[2], found[0], atol=1e-9)
+
+
+def test_communication_steps_are_at_most_as_long_as_the_step_of_the_fmu(packed, monkeypatch):
+    lengths, advance = [], FMU2Slave.doStep
+    monkeypatch.setattr(
+        FMU2Slave, "doStep", lambda self, at, length: (lengths.append(length), advance(self, at, length))
+    )
+    engine_of(packed("stepped", changes=STEP, stick_count="count")).simulate(FIG5, START, [0.0, 0.02, 0.045])
+    assert lengths == pytest.approx([0.01] * 2 + [0.025 / 3.0] * 3)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_the_error_of_an_fmu_without_a_step_falls_with_the_tolerance(packed, fmi):
+    engine = engine_of(packed(f"tolerant{fmi}", fmi))
+    coarse, fine, exact = (
+        engine.simulate(FIG5, START, [0.0, 10.0], tolerance=tolerance).at_end
+        for tolerance in (1e-3, 1e-6, 1e-11)
+    )
+    assert 0.0 < np.max(np.abs(fine - exact)) < 0.1 * np.max(np.abs(coarse - exact))
 
 
 def test_a_failed_call_of_an_fmu_is_reported(right):
