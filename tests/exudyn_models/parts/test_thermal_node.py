@@ -83,4 +83,5 @@ def test_a_hot_node_cools_exponentially_and_another_source_heats_it():
     heated.heated_by(lambda mbs, t: 3.0 + t)
     run(mbs, end=1.0, steps=100)
     assert hot.temperature(mbs) == pytest.approx(20.0 + 60.0 * np.exp(-0.5), rel=1e-12)
+    assert hot.stored_energy(mbs) == pytest.approx(8.0 * 60.0 * np.exp(-0.5), rel=1e-12)
     assert heated.temperature(mbs) == pytest.approx(20.0 + 3.5 / 8.0, rel=1e-13)
