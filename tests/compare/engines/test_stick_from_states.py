@@ -33,7 +33,7 @@ BLOCK = replace(FIG5, stiffness=0.1, damping=0.0, friction_force=1.0, disc_speed
 
 
 def drawn(seed):
-    """Return a random pin and start; many stick in between, some at the end, some permanently."""
+    """Return a random pin and start; seed 1 never sticks, 18 and 56 stick in between."""
     random = np.random.default_rng(seed)
     pin = replace(
         FIG5,
@@ -53,7 +53,7 @@ MOTIONS = {
     "a block that is held": (BLOCK, (9.0, 3.0, 0.0, 0.0)),
     "a block that is released": (BLOCK, (9.0, 5.0, 0.0, 0.0)),
     "a block that swings to rest": (replace(BLOCK, stiffness=1.0), (6.0, 6.0, 0.0, 0.0)),
-} | {f"drawn {seed}": drawn(seed) for seed in range(3)}
+} | {f"drawn {seed}": drawn(seed) for seed in (1, 18, 56)}
 
 
 def told(system, start, times, *, tolerance=1e-9):
