@@ -61,9 +61,3 @@ void put_states(Driver *driver, const double x[]) {
 
 void tangent(Driver *driver, double d[]) { unit_tangent(&driver->unit, d); }
 int mode(Driver *driver) { return driver->unit.state.mode; }
-void *kept(Driver *driver) {
-    State *state = malloc(sizeof(State));
-    *state = driver->unit.state;
-    return state;
-}
-void roll_back(Driver *driver, const State *state) { driver->unit.state = *state; }

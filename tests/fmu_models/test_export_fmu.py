@@ -1,11 +1,20 @@
 """Exported units: both FMI versions, FMPy as importer and solver, units as engines, and export without a compiler."""
 
+import ctypes
+import functools
 import zipfile
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+pytest.importorskip("fmpy", reason="FMPy is not installed")
+pytest.importorskip("fmpy.fmi3")
+
+import fmpy
+from fmpy.validation import validate_fmu
+
+import reference_model
 from compare.claims.claim import Verdict
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from compare.cli import app as cli
@@ -13,14 +22,7 @@ from compare.engines import engines
 from compare.studies.engines.trajectories import STUDY
 from fmu_models import CLUTCH, PIN, HeadersMissingError, archive, export
 from fmu_models.archive import sources_of
-
-fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed")
-pytest.importorskip("fmpy.fmi3")
-
-from fmpy.validation import validate_fmu  # noqa: E402
-
-import reference_model  # noqa: E402
-from reference_model.systems import COLUMNS, DiscOnDisc  # noqa: E402
+from reference_model.systems import COLUMNS, DiscOnDisc
 
 SIX = replace(FIG11, contact_points=6)
 BOTH = pytest.mark.parametrize("fmi", [2, 3])
@@ -32,14 +34,18 @@ def test_validator_accepts_the_unit(unit, name, fmi):
     assert validate_fmu(str(unit(name, fmi))) == []
 
 
+@functools.cache
+def reference(system, start):
+    return reference_model.simulate(system, start, [0.0, 60.0], tolerance=1e-12)
+
+
 @pytest.mark.parametrize(
     ("name", "system", "start", "fmi"),
     [
         *(("pin", FIG5, FIG5_STARTS["whirl"], fmi) for fmi in (2, 3)),
-        ("disc", FIG11, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), 2),
         ("disc", SIX, (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), 3),
     ],
-    ids=["pin that sticks, FMI 2", "pin that sticks, FMI 3", "ring", "six points"],
+    ids=["pin that sticks, FMI 2", "pin that sticks, FMI 3", "six points"],
 )
 def test_cvode_finds_motion_stick_and_release(unit, name, system, start, fmi):
     states = [column for column, _ in COLUMNS[type(system)]]
@@ -55,49 +61,53 @@ def test_cvode_finds_motion_stick_and_release(unit, name, system, start, fmi):
         relative_tolerance=1e-12,
         start_values=dict(zip(states, start, strict=True)) | points,
     )
-    reference = reference_model.simulate(system, start, [0.0, 60.0], tolerance=1e-13)
-    np.testing.assert_allclose([run[one][-1] for one in states], reference.at_end, rtol=0.0, atol=1e-8)
-    expected = [phase.start for phase in reference.phases[1:]]
+    exact = reference(system, start)
+    np.testing.assert_allclose([run[one][-1] for one in states], exact.at_end, rtol=0.0, atol=1e-8)
+    expected = [phase.start for phase in exact.phases[1:]]
     assert (len(expected) > 8) == (name == "pin")
     found = run["time"][1:][np.diff(run["sticks"].astype(int)) != 0]
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7)
 
 
 @BOTH
-def test_co_simulation_rolls_back_and_returns_derivatives_of_outputs(unit, fmi):
+def test_co_simulation_rolls_back_and_returns_derivatives(unit, tmp_path, fmi):
     file = str(unit("pin", fmi))
     description = fmpy.read_model_description(file)
-    folder = fmpy.extract(file)
-    instance = fmpy.instantiate_fmu(folder, description, "CoSimulation")
+    instance = fmpy.instantiate_fmu(fmpy.extract(file, tmp_path), description, "CoSimulation")
     places = {one.name: one.valueReference for one in description.modelVariables}
     if fmi == 2:
         instance.setupExperiment()
     instance.enterInitializationMode()
     instance.exitInitializationMode()
     get = instance.getReal if fmi == 2 else instance.getFloat64
-    seen = [places[one] for one in ("x", "vx")]
-    kept, found = instance.getFMUState() if fmi == 3 else instance.getFMUstate(), []
-    for _ in range(2):
-        instance.doStep(0.0, 5.0)
-        found.append(get(seen))
-        (instance.setFMUState if fmi == 3 else instance.setFMUstate)(kept)
-    assert found[0] == found[1]
-    known, unknown = [places["vx"]], [places["der_x"], places["der_vx"]]
-    along = instance.getDirectionalDerivative(unknown, known, [1.0])
+    outputs, rates = ([places[one] for one in names] for names in (("x", "vx"), ("der_x", "der_vx")))
+    along = instance.getDirectionalDerivative(rates, outputs[1:], [1.0])
     assert along[0] == 1.0
     assert along[1] < -0.1
+    state = "FMUstate" if fmi == 2 else "FMUState"
+    kept = getattr(instance, f"get{state}")()
+    instance.doStep(0.0, 5.0)
+    reached = get(outputs)
+    saved = getattr(instance, f"serialize{state}")(kept)
+    restored = getattr(instance, f"de{'S' if fmi == 2 else 's'}erialize{state}")(saved)
+    for one in (kept, restored):
+        getattr(instance, f"set{state}")(one)
+        assert get(outputs) != reached
+        instance.doStep(0.0, 5.0)
+        assert get(outputs) == reached
+    assert derivatives_of_outputs(instance, fmi, outputs) == get(rates)
     instance.terminate()
     instance.freeInstance()
 
 
-PLAIN = {"pin": "a pin", "ring": "a disc on the continuous ring", "points": "a disc on six points"}
-"""Motion of the study by kind of contact."""
-
-
-def moves(file, kind):
-    (engine,) = engines([f"fmu:{file}"])
-    (claim,) = STUDY.measure(engine, only=[f"moves/{PLAIN[kind]}"]).claims
-    return claim.verdict
+def derivatives_of_outputs(instance, fmi, outputs):
+    if fmi == 2:
+        return instance.getRealOutputDerivatives(outputs, [1] * len(outputs))
+    size = len(outputs)
+    found = (ctypes.c_double * size)()
+    references, orders = (ctypes.c_uint32 * size)(*outputs), (ctypes.c_int32 * size)(*[1] * size)
+    instance.fmi3GetOutputDerivatives(instance.component, references, size, orders, found, size)
+    return list(found)
 
 
 COMES_TO_REST = DiscOnDisc(
@@ -133,8 +143,7 @@ def test_unit_reports_when_points_stick_and_are_released(unit, fmi, system, star
 def test_unit_reports_all_phases_for_any_communication_steps(unit, fmi, times):
     (engine,) = engines([f"fmu:{unit('pin', fmi)}"])
     found = engine.simulate(FIG5, FIG5_STARTS["whirl"], times, tolerance=1e-11)
-    expected = reference_model.simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 60.0], tolerance=1e-13)
-    assert engine.phases
+    expected = reference(FIG5, FIG5_STARTS["whirl"])
     assert [phase.kind for phase in found.phases] == [phase.kind for phase in expected.phases]
     assert len(found.phases) > 8
     for mine, theirs in zip(found.phases, expected.phases, strict=True):
@@ -155,9 +164,11 @@ def test_disc_that_sticks_from_the_start_is_released_at_the_exact_time(unit):
     np.testing.assert_allclose(found.phases[1].initial_state, expected.phases[1].initial_state, atol=1e-14)
 
 
-@pytest.mark.parametrize("kind", PLAIN)
+@pytest.mark.parametrize("kind", ["a disc on the continuous ring", "a disc on six points"])
 def test_claims_agree_with_the_unit(unit, kind):
-    assert moves(unit("pin" if kind == "pin" else "disc"), kind) is Verdict.AGREES
+    (engine,) = engines([f"fmu:{unit('disc')}"])
+    (claim,) = STUDY.measure(engine, only=[f"moves/{kind}"]).claims
+    assert claim.verdict is Verdict.AGREES
 
 
 @BOTH

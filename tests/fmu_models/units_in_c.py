@@ -11,8 +11,7 @@ class Instance:
     def __init__(self, library, model, **values):
         self.library, self.model = library, model
         self.places = {one.name: i for i, one in enumerate(model.variables)}
-        for name in ("made", "kept"):
-            getattr(library, name).restype = ctypes.c_void_p
+        library.made.restype = ctypes.c_void_p
         library.said.restype, library.get.restype = ctypes.c_char_p, ctypes.c_double
         self.itself = ctypes.c_void_p(library.made())
         self.set(**values)

@@ -21,22 +21,16 @@ from compare.studies import studies
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 
-def test_the_compiled_engine_takes_part_only_if_named():
-    assert "compiled" not in [engine.name for engine in engines()]
-    (compiled,) = engines(["compiled"])
-    found = compiled.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 5.0])
-    assert found.solution.method.startswith("compiled")
-    plain = engines(["reference"])[0].simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 5.0])
-    np.testing.assert_allclose(found.at_end, plain.at_end, atol=1e-8)
-
-
-def test_the_plain_engine_takes_part_only_if_named_and_does_not_stick():
-    assert "plain" not in [engine.name for engine in engines()]
-    (plain,) = engines(["plain"])
-    found = plain.simulate(FIG11, [0.1, 0.0, 0.0, 0.03, 0.0, 1.0], [0.0, 2.0], tolerance=1e-6)
-    assert found.solution.method == "Radau"
-    with pytest.raises(UnsupportedSystemError, match="plain does not simulate stick"):
-        plain.simulate(replace(FIG5, friction_force=0.2), [0.0] * 4, [0.0, 1.0])
+@pytest.mark.parametrize(("name", "method"), [("compiled", "compiled"), ("plain", "Radau")])
+def test_an_engine_on_request_takes_part_only_if_named(name, method):
+    assert name not in [engine.name for engine in engines()]
+    (engine,) = engines([name])
+    found, exact = (
+        one.simulate(FIG11, [0.1, 0.0, 0.0, 0.03, 0.0, 1.0], [0.0, 2.0], tolerance=1e-7)
+        for one in (engine, *engines(["reference"]))
+    )
+    assert found.solution.method.startswith(method)
+    np.testing.assert_allclose(found.at_end, exact.at_end, atol=1e-5)
 
 
 def test_an_engine_without_nonlinear_supports_rejects_them():
@@ -46,8 +40,6 @@ def test_an_engine_without_nonlinear_supports_rejects_them():
     assert compiled.lacking([FIG5, *hard]) == "compiled does not simulate a pin on a nonlinear support"
     with pytest.raises(UnsupportedSystemError, match="nonlinear support"):
         compiled.simulate(hard[0], [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])
-    pins_only = Engine("mine", fake_studies.straight, nonlinear=False)
-    assert pins_only.lacking([FIG11]) == "mine does not simulate a disc on a continuous ring"
 
 
 def reading(*names):
@@ -61,6 +53,11 @@ def reading(*names):
     return Engine("mine", simulate)
 
 
+def reading_all(pin, state, times, *, tolerance):
+    assert vars(pin)
+    return reading().function(pin, state, times)
+
+
 @pytest.mark.parametrize("change", [{"hardening": 2.0}, {"stop_stiffness": 1.0, "stop_gap": 0.5}])
 def test_an_engine_that_never_reads_a_nonlinear_support_does_not_simulate_it(change):
     motion = replace(FIG5, **change), [0.1, 0.0, 0.0, 0.0], [0.0, 1.0]
@@ -69,6 +66,7 @@ def test_an_engine_that_never_reads_a_nonlinear_support_does_not_simulate_it(cha
         reading("stiffness").simulate(*motion)
     assert len(reading("stiffness", list(change)[-1]).simulate(*motion).times) == 2
     assert len(reading("mass").simulate(FIG5, *motion[1:]).times) == 2
+    assert len(Engine("mine", reading_all).simulate(*motion).times) == 2
 
 
 @pytest.fixture
@@ -92,7 +90,6 @@ def module(tmp_path, monkeypatch):
     [
         ("", ("pin",)),
         ("simulate.kinds = ('pin', 'ring')", ("pin", "ring")),
-        ("simulate.kinds = ()", ()),
     ],
 )
 def test_a_users_engine_is_named_module_function_and_declares_its_kinds(code, kinds, module):
@@ -105,12 +102,10 @@ def test_a_users_engine_is_named_module_function_and_declares_its_kinds(code, ki
     ("code", "reason"),
     [
         ("1 / 0", " cannot be imported: ZeroDivisionError: division by zero"),
-        ("def (", " cannot be imported: SyntaxError: "),
         ("simulate.kinds = ('rings',)", ", attribute kinds = … did you mean 'ring'"),
         ("simulate.kinds = 7", ", attribute kinds = …not iterable"),
         ("simulate.sticks = 'no'", ", attribute …sticks = 'no': it must be True or False"),
         ("simulate.step = 1e-300", ", attribute …step = 1e-300 s: it must be at least 1e-09 s"),
-        ("simulate.step = 'small'", ", attribute …step = 'small': it must be a number"),
     ],
 )
 def test_an_invalid_module_is_rejected(code, reason, module):
@@ -125,43 +120,32 @@ def test_a_registered_name_cannot_be_used_again(name):
         register(Engine(name, fake_studies.straight))
 
 
-POINTS, RING = replace(FIG11, contact_points=6), FIG11
 BLOCK = replace(FIG5, disc_speed=0.0)
+SYSTEMS = {"pin": FIG5, "block": BLOCK, "ring": FIG11, "points": replace(FIG11, contact_points=6)}
 
 
 @pytest.mark.parametrize(
     ("kinds", "lacking"),
     [
-        (("pin", "block"), "mine does not simulate a disc on a continuous ring or a disc on single points"),
+        (("pin",), "mine does not simulate a disc on a continuous ring or a disc on single points"),
         (("points", "ring"), "mine does not simulate a pin or a block on a plane at rest"),
         (("block", "points", "ring"), "mine does not simulate a pin"),
         (EVERY_KIND, ""),
     ],
 )
-def test_an_engine_simulates_the_kinds_that_it_declares(kinds, lacking):
-    engine = Engine("mine", fake_studies.straight, kinds)
-    systems = {"pin": FIG5, "block": BLOCK, "ring": RING, "points": POINTS}
-    assert engine.lacking([*systems.values(), RING]) == lacking
-    for kind, system in systems.items():
+def test_an_engine_simulates_the_kinds_that_it_declares_and_blocks_as_pins(kinds, lacking):
+    engine = Engine("mine", fake_studies.straight, kinds, nonlinear=False)
+    assert engine.lacking([*SYSTEMS.values(), FIG11]) == lacking
+    for kind, system in SYSTEMS.items():
         state = [0.0] * system.state_size
-        assert engine.simulates(system) == (kind in kinds)
-        if kind in kinds:
+        known = kind in kinds or (kind == "block" and "pin" in kinds)
+        assert engine.simulates(system) == known
+        if known:
+            assert engine.lacking([replace(system, hardening=2.0)]).endswith(" on a nonlinear support")
             assert engine.simulate(system, state, [0.0, 1.0], tolerance=1e-3).solution.tolerance == 1e-3
         else:
             with pytest.raises(UnsupportedSystemError, match=r"^mine does not simulate a "):
                 engine.simulate(system, state, [0.0, 1.0])
-
-
-@pytest.mark.parametrize("kind", ["pin", "block"])
-def test_an_engine_for_pins_also_simulates_blocks_on_a_plane_at_rest(kind):
-    engine, hard = (
-        Engine("mine", fake_studies.straight, (kind,), nonlinear=False),
-        replace(BLOCK, hardening=2.0),
-    )
-    assert [engine.simulates(one) for one in (FIG5, BLOCK, hard)] == [kind == "pin", True, False]
-    assert (
-        engine.lacking([hard]) == "mine does not simulate a block on a plane at rest on a nonlinear support"
-    )
 
 
 def test_an_installed_package_registers_its_engine_by_an_entry_point(tmp_path, monkeypatch):
@@ -206,7 +190,6 @@ NO_ANSWERS = [
     ({"times": TIMES + 0j}, f"the trajectory's times have the type complex128: {NOT_REAL}"),
     ({"states": np.zeros((5, 6))}, "the trajectory's states have shape (5, 6): expected (5, 4)"),
     ({"states": BROKEN_STATES}, "the state at t = 0.75 s is not finite: [0.0, 0.0, inf, 0.0]"),
-    ({"states": np.full((5, 4), "1")}, f"the trajectory's states have the type <U1: {NOT_REAL}"),
     ({"states": np.full((5, 4), True)}, f"the trajectory's states have the type bool: {NOT_REAL}"),
     (spans((0.0, 1.0), kind="glide"), f"phases[0] is 'glide': {NO_PHASE}"),
     ({"phases": ("slip",)}, f"phases[0] is 'slip': {NO_PHASE}"),
@@ -227,9 +210,8 @@ def test_an_invalid_trajectory_is_rejected(changes, sentence):
 
 
 def test_a_result_that_is_not_a_trajectory_is_rejected():
-    engine = Engine("mine", lambda *_, **__: 42)
     with pytest.raises(TypeError, match=r"^simulate\(\) returned 42: it must be a Trajectory$"):
-        engine.simulate(FIG5, [0.0] * 4, TIMES)
+        Engine("mine", lambda *_, **__: 42).simulate(FIG5, [0.0] * 4, TIMES)
 
 
 def test_times_may_deviate_by_rounding():
@@ -295,16 +277,3 @@ def test_studies_are_returned_in_report_order():
     among = fake_studies.ALL
     assert [study.name for study in studies(["agreement", "verdicts"], among)] == ["verdicts", "agreement"]
     assert studies([], among) == among
-
-
-@pytest.mark.parametrize("name", ["reference", "exudyn", "exudyn-native"])
-@pytest.mark.parametrize("system", [FIG5, RING, POINTS], ids=["pin", "ring", "points"])
-def test_repeated_runs_are_equal_to_the_last_bit(name, system):
-    """Tests of studies rely on this, because they cache trajectories of the reference."""
-    (engine,) = engines([name])
-    if not engine.simulates(system):
-        return
-    start = (0.1, 0.0, 0.03, 0.0) if system is FIG5 else (0.1, 0.0, 0.0, 0.0, 0.1, 1.0)
-    one, other = (engine.simulate(system, start, (0.0, 5.0, 10.0), tolerance=1e-7) for _ in range(2))
-    np.testing.assert_array_equal(one.states, other.states)
-    assert one.stick_times.tolist() == other.stick_times.tolist()

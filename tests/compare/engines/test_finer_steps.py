@@ -16,9 +16,8 @@ from compare.engines import Engine
 from reference_model import PinOnDisc, Trajectory
 
 STEP = 0.1
-PIN = PinOnDisc(
-    mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.0, disc_speed=0.0, offset=0.0
-)  # its motion is cos t
+# Its motion is cos t.
+PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.0, disc_speed=0.0, offset=0.0)
 
 
 def euler(system, state, times, *, step, stiffness=1.0):
@@ -31,44 +30,46 @@ def euler(system, state, times, *, step, stiffness=1.0):
     return Trajectory(system, np.array(times), np.array([state, (x, 0.0, vx, 0.0)]))
 
 
-def swing(engine, tolerance):
-    return engine.simulate(PIN, (1.0, 0.0, 0.0, 0.0), (0.0, 10.0), tolerance=tolerance).states[-1][0]
-
-
 def study_of(resolution):
     study = Study("mine", Prose("Mine"))
 
     @study.claim("It swings", resolution=resolution)
     def swings(engine):
-        found = swing(engine, 1e-9)
+        found, coarse = (
+            engine.simulate(PIN, (1.0, 0.0, 0.0, 0.0), (0.0, 10.0), tolerance=tolerance).states[-1][0]
+            for tolerance in (1e-9, 8e-9)
+        )
         return Measured(
-            value=found,
-            predicted=math.cos(10.0),
-            error=abs(found - swing(engine, 8e-9)),
-            system=PIN,
-            source="here",
+            value=found, predicted=math.cos(10.0), error=abs(found - coarse), system=PIN, source="here"
         )
 
     return study
 
 
-def engine_of(function):
-    return Engine("mine", function, step=STEP)
+def fails_below(system, state, times, *, step):
+    """Simulate the oscillator, but fail below the engine's own step."""
+    if step < 0.5 * STEP:
+        raise RuntimeError("out of memory")
+    return euler(system, state, times, step=step)
 
 
-def test_an_inconclusive_claim_is_measured_again_with_shorter_steps():
-    (claim,) = study_of(2e-2).measure(engine_of(euler)).claims
-    assert claim.verdict is Verdict.AGREES
-    assert claim.note == "Measured with 1/4 of the engine's own step, which leaves the claim inconclusive."
-    (claim,) = study_of(0.5).measure(engine_of(euler)).claims
-    assert claim.verdict is Verdict.AGREES
-    assert claim.note == ""
+AGAIN = "Measured with 1/4 of the engine's own step, which leaves the claim inconclusive."
+FAILED = "The run with 1/4 of the engine's own step failed: out of memory"
 
 
-def test_a_wrong_engine_differs_at_a_shorter_step():
-    stiffer = functools.partial(euler, stiffness=1.01)
-    (claim,) = study_of(1e-3).measure(engine_of(stiffer)).claims
-    assert claim.verdict is Verdict.DIFFERS
+@pytest.mark.parametrize(
+    ("function", "resolution", "verdict", "note"),
+    [
+        (euler, 0.5, Verdict.AGREES, ""),
+        (euler, 2e-2, Verdict.AGREES, AGAIN),
+        (functools.partial(euler, stiffness=1.01), 1e-3, Verdict.DIFFERS, AGAIN),
+        (fails_below, 2e-2, Verdict.INCONCLUSIVE, FAILED),
+    ],
+    ids=["conclusive at once", "inconclusive", "wrong", "fails"],
+)
+def test_an_inconclusive_claim_is_measured_again_with_shorter_steps(function, resolution, verdict, note):
+    (claim,) = study_of(resolution).measure(Engine("mine", function, step=STEP)).claims
+    assert (claim.verdict, claim.note) == (verdict, note)
 
 
 def test_only_a_fixed_step_is_shortened_and_only_within_the_time_limit(monkeypatch):
@@ -81,22 +82,7 @@ def test_only_a_fixed_step_is_shortened_and_only_within_the_time_limit(monkeypat
         )
         return steps
 
-    assert asked(Engine("free", euler), 0.0) == [None]
-    assert asked(None, 0.0) == [None]
-    assert asked(engine_of(euler), 0.9 * LONGEST / SHORTER) == pytest.approx(
-        [STEP / 4.0**i for i in range(4)]
-    )
-    assert asked(engine_of(euler), 1.1 * LONGEST / SHORTER) == [STEP]
-
-
-def fails_below(system, state, times, *, step):
-    """Simulate the oscillator, but fail below the engine's own step."""
-    if step < 0.5 * STEP:
-        raise RuntimeError("out of memory")
-    return euler(system, state, times, step=step)
-
-
-def test_a_failure_at_a_shorter_step_leaves_the_claim_inconclusive():
-    (claim,) = study_of(2e-2).measure(engine_of(fails_below)).claims
-    assert claim.verdict is Verdict.INCONCLUSIVE
-    assert claim.note == "The run with 1/4 of the engine's own step failed: out of memory"
+    fixed = Engine("mine", euler, step=STEP)
+    assert asked(Engine("free", euler), 0.0) == asked(None, 0.0) == [None]
+    assert asked(fixed, 0.9 * LONGEST / SHORTER) == pytest.approx([STEP / 4.0**i for i in range(4)])
+    assert asked(fixed, 1.1 * LONGEST / SHORTER) == [STEP]

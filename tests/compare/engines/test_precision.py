@@ -74,9 +74,9 @@ def test_noise_moves_a_start_without_changing_its_slip():
 
 
 def test_stick_is_found_in_noise():
-    exact = reference_model.simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 30.0]).phases
-    found = engine(1e-6).simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 30.0]).phases
-
+    motion = FIG5, FIG5_STARTS["whirl"], [0.0, 15.0]
+    exact, found = (one.simulate(*motion).phases for one in (reference, engine(1e-6)))
+    assert len(exact) > 4
     assert [phase.kind for phase in found] == [phase.kind for phase in exact]
     assert np.allclose([phase.start for phase in found], [phase.start for phase in exact], atol=1e-3)
 

@@ -6,12 +6,12 @@ import pytest
 from free_bodies import drive, new_model, rate_of, rotor, settings_of
 
 from exudyn_models import add_ring_friction, largest_stable_step, solve_dynamic
-from exudyn_models.solver.linear_matrices import matrices_of_model
 
 SOLVERS = exu.DynamicSolverType
 LOAD, EPSILON = 500.0, 1e-2
 BUILT_IN, USER_FUNCTION = "ConnectorCoordinateSpringDamperExt", "GenericODE2"
-GEOMETRIES = ({"contact_radius": 0.12}, {"inner_radius": 0.05, "outer_radius": 0.12, "pressure": "wear"})
+RING = {"contact_radius": 0.12}
+WORN = {"inner_radius": 0.05, "outer_radius": 0.12, "pressure": "wear"}
 
 
 def in_python(time):
@@ -45,22 +45,20 @@ def end_of(load, grounded, solver, **contact):
     return np.append(mbs.systemData.GetODE2Coordinates_t(), mbs.GetSensorValues(heat)), kind_of(friction)
 
 
-@pytest.mark.parametrize("geometry", GEOMETRIES, ids=["ring", "worn annulus"])
-@pytest.mark.parametrize("grounded", [False, True])
-@pytest.mark.parametrize("solver", ["RK44", "DOPRI5", "TrapezoidalIndex2", "GeneralizedAlpha"])
+@pytest.mark.parametrize(
+    ("solver", "grounded", "geometry"),
+    [
+        ("RK44", True, RING),
+        ("DOPRI5", False, WORN),
+        ("TrapezoidalIndex2", True, WORN),
+        ("GeneralizedAlpha", False, RING),
+    ],
+)
 def test_motion_and_heat_equal_the_user_function_to_rounding(solver, grounded, geometry):
     built_in, first = end_of(LOAD, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
     by_function, second = end_of(in_python, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
     assert (first, second) == (BUILT_IN, USER_FUNCTION)
     np.testing.assert_allclose(built_in, by_function, rtol=1e-11, atol=1e-11)
-
-
-def test_the_solvers_know_the_damping_of_creep():
-    mbs, *_ = braked(LOAD, False, 0.05)
-    mbs.Assemble()
-    *_, damping = matrices_of_model(mbs)
-    by_hand = 0.3 * LOAD * 0.12**2 / EPSILON * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    np.testing.assert_allclose(damping, by_hand, rtol=1e-8)
 
 
 @pytest.mark.parametrize(

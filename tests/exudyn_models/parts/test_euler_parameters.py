@@ -1,10 +1,9 @@
 """Friction and support of bodies with Euler parameters, Exudyn's default, under implicit solvers."""
 
 import exudyn as exu
-import exudyn.utilities
 import numpy as np
 import pytest
-from free_bodies import new_model, settings_of
+from free_bodies import settings_of
 from pairs_of_bodies import EULER, bodies_of, conserved, momenta_and_energy
 
 from exudyn_models import (
@@ -48,30 +47,6 @@ def test_momentum_is_kept_to_rounding_and_angular_momentum_and_energy_to_second_
         leaks.append(np.max(np.abs(balance.residual)))
     for errors in (drifts, leaks):
         assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
-
-
-def test_the_default_body_of_exudyn_goes_by_its_number_and_its_sensors_tell_its_motion():
-    mbs = new_model()
-    bodies = [
-        mbs.CreateRigidBody(
-            referencePosition=[x, 0.0, 0.3],
-            inertia=exu.utilities.InertiaCuboid(1000.0, [0.1, 0.1, 0.1]),
-            initialAngularVelocity=[0.0, 0.0, spin],
-        )
-        for x, spin in ((0.0, 2.0), (0.05, -3.0))
-    ]
-    clutch = add_ring_friction(mbs, *bodies, **RING)
-    sensors = [clutch.add_sensor(q) for q in ("relative_spin", "centre_slip", "radial_force", "power")]
-    mbs.Assemble()
-    spin, slip, force, power = (np.array(mbs.GetSensorValues(sensor)) for sensor in sensors)
-    assert mbs.GetNode(clutch.nodes[0])["nodeType"] == "RigidBodyEP"
-    assert spin == pytest.approx(-5.0, rel=1e-14)
-    assert slip == pytest.approx(
-        2.0 * 0.05, rel=1e-14
-    )  # the disc's centre rests, and the master passes it at ω·d
-    assert force[[0, 2]] == pytest.approx(0.0, abs=1e-14)
-    assert force[1] > 0.0  # in the direction of the master's motion
-    assert power > 0.0
 
 
 def test_an_explicit_solver_is_refused_with_the_node_that_serves():

@@ -25,9 +25,10 @@ NUMBERS = {"friction_coefficient": 0.25, "normal_load": STIFFNESS * ARM / 0.25}
 FUNCTIONS = {"friction_coefficient": coefficient, "normal_load": load}
 
 
-@pytest.mark.parametrize("factors", [NUMBERS, FUNCTIONS], ids=["numbers", "functions"])
 @pytest.mark.parametrize(
-    ("contact_radius", "spin"), [(0.0, 0.0), (0.12, SPEED)], ids=["pin", "ring that turns with the master"]
+    ("contact_radius", "spin", "factors"),
+    [(0.0, 0.0, NUMBERS), (0.12, SPEED, FUNCTIONS)],
+    ids=["pin, numbers", "ring that turns with the master, functions"],
 )
 def test_static_solver_finds_the_self_centred_equilibrium(factors, contact_radius, spin):
     # A ring that turns with the master slips equally everywhere, like a pin. A static run keeps the velocities.

@@ -4,9 +4,9 @@ import exudyn as exu
 import numpy as np
 import pytest
 from free_bodies import drive, new_model, rotor, settings_of
-from pairs_of_bodies import bodies_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
+from exudyn_models.parts.friction_sensors import BAND, _Mode
 
 INERTIA, RADIUS, LOAD, EPSILON = 0.02, 0.12, 100.0, 5e-4
 CAPACITY = 0.3 * LOAD * RADIUS
@@ -30,14 +30,6 @@ def told(torque, end, spin=0.0, step=1e-3, **contact):
     return stored[0][:, 0], *(values[:, 1] for values in stored)
 
 
-def test_a_sticking_contact_reports_its_share_of_capacity():
-    times, spin, share, mode = told(lambda t: 0.8 * CAPACITY * t, 1.0)
-    settled = times > 0.01  # INERTIA·ε/(μN·R²) = 25 µs
-    np.testing.assert_allclose(share[settled], 0.8 * times[settled], atol=1e-4)
-    np.testing.assert_allclose(spin, share * EPSILON / RADIUS, rtol=1e-9, atol=1e-15)
-    assert (mode == 0.0).all()
-
-
 def test_the_mode_follows_break_away_in_either_direction_and_stick():
     period = 2.0
 
@@ -59,12 +51,13 @@ def test_the_mode_follows_break_away_in_either_direction_and_stick():
 
 
 def test_a_contact_that_holds_nearly_all_it_can_is_locked_once_its_slip_has_ended():
-    times, _, share, mode = told(lambda t: 0.97 * CAPACITY, 0.5, spin=0.5)
+    times, spin, share, mode = told(lambda t: 0.97 * CAPACITY, 0.5, spin=0.5)
     stop = 0.5 * INERTIA / (0.03 * CAPACITY)
     assert (mode[times < 0.99 * stop] == 1.0).all()
     locked = times > 1.01 * stop
     assert (mode[locked] == 0.0).all()
     np.testing.assert_allclose(share[locked], 0.97, atol=1e-3)
+    np.testing.assert_allclose(spin[locked], share[locked] * EPSILON / RADIUS, rtol=1e-9)
 
 
 def test_the_mode_does_not_flicker_where_a_torque_shakes_a_contact_at_its_capacity():
@@ -82,6 +75,12 @@ def test_the_mode_does_not_flicker_where_a_torque_shakes_a_contact_at_its_capaci
     assert (mode == 0.0).all()
 
 
+def test_a_new_run_forgets_the_mode_of_the_last_one():
+    within_band, mode = 1.0 - 0.5 * BAND, _Mode()
+    assert [mode.at(t, creep, 1.0) for t, creep in ((0.0, 2.0), (1.0, within_band))] == [1.0, 1.0]
+    assert mode.at(0.0, within_band, 1.0) == 0.0
+
+
 def test_a_clutch_without_load_is_open():
     _, spin, share, mode = told(lambda t: 0.0, 0.3, spin=1.0, normal_load=lambda time: max(0.0, time - 0.1))
     opened = mode == 2.0
@@ -90,16 +89,6 @@ def test_a_clutch_without_load_is_open():
     assert opened[:2].all()
     assert opened.sum() < len(mode)
     assert (mode[~opened] == 1.0).all()
-
-
-def test_a_spatial_disc_has_the_sensor_values_of_a_planar_one():
-    mbs, nodes = bodies_of(("planar", "Tait-Bryan"))
-    friction = add_ring_friction(mbs, *nodes, **RING)
-    spin, share, mode = (friction.add_sensor(name) for name in QUANTITIES)
-    mbs.Assemble()
-    assert mbs.GetSensorValues(spin) < -2.5
-    assert mbs.GetSensorValues(share) == 1.0
-    assert mbs.GetSensorValues(mode) == -1.0
 
 
 def test_a_contact_that_closes_while_it_slips_at_its_capacity_slips():

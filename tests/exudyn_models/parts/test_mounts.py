@@ -54,6 +54,10 @@ def body_of(mbs, kind, axes, place, velocity=NONE, spin=NONE, mass=1.0, inertia=
     return ball(mbs, SPATIAL[kind], mass, inertia, place, velocity, spin, axes)
 
 
+def rotor_object(node, place):
+    return items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, referencePosition=place)
+
+
 def marker_on(mbs, body, place):
     return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
 
@@ -68,52 +72,6 @@ PAIRS = [
     *product(("ground", "rotor"), (*SPATIAL, "rotor")),
     *product(SPATIAL, ("rotor",)),
 ]
-FREE = {"ground": False, "rotor": False} | dict.fromkeys(SPATIAL, True)
-
-
-def motion(kinds, turned, own):
-    """Return the motion of both bodies at 0.05 s in the contact's axes ``turned``.
-
-    Spatial bodies have other axes, whose columns in the contact's axes are ``own``.
-    """
-    mbs, bodies, rotation = new_model(), [], []
-    starts = (
-        ([0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0], 2.0, 0.7),
-        ([0.15, 0.18, 0.3], [-0.2, 0.3, 0.0], [0.0, 0.0, -1.0], 1.0, 0.02),
-    )
-    for kind, axes, (place, velocity, spin, *numbers) in zip(kinds, own, starts, strict=True):
-        axes = axes if FREE[kind] else np.eye(3)
-        vectors = [turned @ vector for vector in (place, velocity, spin)]
-        bodies.append(body_of(mbs, kind, turned @ axes, *vectors, *numbers))
-        rotation.append(axes.T)
-    add_ring_friction(mbs, *bodies, **WITH_RADIUS, master_rotation=rotation[0], disc_rotation=rotation[1])
-    if "Tait-Bryan" in kinds:  # the error of the trapezoidal rule depends on the orientation
-        run_explicitly(mbs, 0.05, 40)
-    else:
-        solve_dynamic(mbs, settings_of(0.05, 5, newton=1e-12), IMPLICIT)
-    return np.hstack(
-        [
-            turned.T @ mbs.GetObjectOutputBody(body, quantity)
-            for kind, body in zip(kinds, bodies, strict=True)
-            if kind != "ground"
-            for quantity in (OUT.Position, OUT.Velocity, OUT.AngularVelocity)
-        ]
-    )
-
-
-@pytest.mark.parametrize(
-    "kinds", [kinds for kinds in PAIRS if {*kinds} != {"Tait-Bryan", "Euler parameters"}], ids=" on ".join
-)
-def test_contacts_move_alike_in_all_orientations(kinds):
-    expected = motion(kinds, np.eye(3), (np.eye(3), np.eye(3)))
-    cases = [(ALL_AXES[i], (ALL_AXES[i - 5], ALL_AXES[i - 11])) for i in range(0, 50, 7)]
-    found = [
-        motion(kinds, turned, own)
-        for turned, own in cases
-        if not any(is_singular(kind, turned @ axes) for kind, axes in zip(kinds, own, strict=True))
-    ]
-    assert len(found) > 3  # Tait-Bryan angles have singular orientations
-    np.testing.assert_allclose(found, np.broadcast_to(expected, np.shape(found)), rtol=0.0, atol=1e-11)
 
 
 def forces_by_exudyn(mbs, bodies, places, mounts, velocities):
@@ -179,17 +137,15 @@ def assert_forces_are_those_of_exudyn(mbs, friction, contact):
 
 
 @pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
-def test_forces_on_50_mounts_match_exudyns_velocities(kinds):
-    for i in range(50):
+def test_forces_on_many_mounts_match_exudyns_velocities(kinds):
+    for i in range(0, 50, 2):
         assert_forces_are_those_of_exudyn(*mounted_at_random(kinds, i))
 
 
 def test_the_place_of_a_rotor_along_its_axis_matters_to_a_tilted_master():
     mbs = new_model()
     master = body_of(mbs, "rotation vector", rotations.RotationMatrixX(0.3), [0.1, 0.0, 0.0])
-    node = mbs.AddNode(items.Node1D())
-    disc = items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, referencePosition=[0.0, 0.0, 0.4])
-    bodies = master, mbs.AddObject(disc)
+    bodies = master, mbs.AddObject(rotor_object(mbs.AddNode(items.Node1D()), [0.0, 0.0, 0.4]))
     friction = add_ring_friction(mbs, *bodies, **WITH_RADIUS)
     assert_forces_are_those_of_exudyn(mbs, friction, (bodies, np.zeros((2, 3)), 2 * [np.eye(3)]))
 
@@ -203,41 +159,6 @@ def test_a_mounted_contact_has_the_jacobian_that_exudyn_finds_by_differences(kin
     assert_jacobian_is_that_of_exudyn(mbs, friction.item)
 
 
-PIVOT = {"contact_radius": 0.01, "friction_coefficient": 0.2, "normal_load": 500.0}
-"""A bearing with a friction moment of 1 N m."""
-
-
-@pytest.mark.parametrize("kind", ["planar", *SPATIAL])
-@pytest.mark.parametrize("regularisation", [None, 1e-4])
-def test_a_rod_in_a_bearing_at_its_end_stops_at_the_exact_time(kind, regularisation):
-    """A rod of 2 kg and 0.1 kg m² turns at 3 rad/s about a bearing 0.4 m from its centre, far from the origin."""
-    mbs, pivot, arm, tilt = new_model(), np.array([1.0, 2.0, 0.0]), np.array([-0.4, 0.0, 0.0]), 0.7
-    turned = rotations.RotationMatrixZ(tilt)
-    centre, velocity = pivot - turned @ arm, np.cross([0.0, 0.0, 3.0], -turned @ arm)
-    if kind == "planar":
-        planar_body(mbs, 2.0, 0.1, [*centre[:2], tilt], [*velocity[:2], 3.0])
-        rod = exu.ObjectIndex(0)
-    else:
-        rod = body_of(mbs, kind, turned, centre, velocity, [0.0, 0.0, 3.0], mass=2.0, inertia=0.1)
-    ground = mbs.AddObject(items.ObjectGround(referencePosition=pivot))
-    markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)), marker_on(mbs, rod, arm)]
-    held = [1, 1, 0, 0, 0, 0] if kind == "planar" else [1, 1, 1, 1, 1, 0]
-    mbs.AddObject(items.GenericJoint(markerNumbers=markers, constrainedAxes=held))
-    bearing = add_ring_friction(mbs, *markers, **PIVOT, regularisation=regularisation)
-    spin = bearing.add_sensor("relative_spin")
-    stops = 3.0 * (0.1 + 2.0 * 0.4**2)  # s at 1 N m
-    changes = solve_dynamic(mbs, settings_of(1.5, 300, newton=1e-10), IMPLICIT)
-    assert abs(mbs.GetSensorValues(spin)) < 1e-6
-    turns = 3.0 * stops / 2.0
-    place = mbs.GetObjectOutputBody(rod, OUT.Position)
-    expected = pivot - rotations.RotationMatrixZ(turns) @ turned @ arm
-    np.testing.assert_allclose(place, expected, rtol=0.0, atol=1e-3 if regularisation else 1e-4)
-    if regularisation is None:
-        assert [(change.time, int(change.after)) for change in changes] == [
-            (pytest.approx(stops, abs=1e-4), 0)
-        ]
-
-
 WHEEL = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 800.0}
 """A brake of 24 N m."""
 X = rotations.RotationMatrixY(np.pi / 2.0)
@@ -246,12 +167,19 @@ BACK = rotations.RotationMatrixX(np.pi)
 """A frame with its z-axis reversed."""
 
 
-@pytest.mark.parametrize("axes", [X, X @ BACK, ALL_AXES[-1]], ids=["x", "against x", "any axis"])
-@pytest.mark.parametrize("ground", ["same", "reversed"])
-@pytest.mark.parametrize("regularisation", [None, 1e-4])
+@pytest.mark.parametrize(
+    ("axes", "ground", "regularisation"),
+    [
+        (X, "same", 1e-4),
+        (X, "reversed", None),
+        (X @ BACK, "same", None),
+        (ALL_AXES[-1], "same", None),
+        (ALL_AXES[-1], "reversed", 1e-4),
+    ],
+    ids=["x, regularised", "x, reversed", "against x", "any axis", "any axis, reversed, regularised"],
+)
 def test_a_brake_on_the_ground_stops_a_rotor_about_any_axis_anywhere(axes, ground, regularisation):
-    place = np.array([1.0, 2.0, 3.0])
-    mbs = new_model()
+    place, mbs, stops = np.array([1.0, 2.0, 3.0]), new_model(), 2.0 * 0.5 / 24.0
     wheel = body_of(mbs, "rotor", axes, place, spin=axes[:, 2] * 2.0, inertia=0.5)
     frame = axes @ BACK if ground == "reversed" else axes @ rotations.RotationMatrixZ(0.4)
     fixed = mbs.AddObject(
@@ -259,21 +187,17 @@ def test_a_brake_on_the_ground_stops_a_rotor_about_any_axis_anywhere(axes, groun
     )
     brake = add_ring_friction(mbs, fixed, wheel, **WHEEL, regularisation=regularisation)
     moment, slip = (brake.add_sensor(quantity) for quantity in ("transmitted_moment", "relative_spin"))
-    sign = -1.0 if ground == "reversed" else 1.0
     mbs.Assemble()
     if regularisation:
+        sign = -1.0 if ground == "reversed" else 1.0
         assert mbs.GetSensorValues(slip) == pytest.approx(2.0 * sign, abs=1e-12)
         assert mbs.GetSensorValues(moment) == pytest.approx(-24.0 * sign, abs=1e-12)
     changes = solve_dynamic(mbs, settings_of(0.06, 60), IMPLICIT)
-    stops = 2.0 * 0.5 / 24.0
-    assert mbs.systemData.GetODE2Coordinates()[0] == pytest.approx(
-        stops, abs=1e-4 if regularisation else 1e-9
-    )
-    assert abs(mbs.systemData.GetODE2Coordinates_t()[0]) < 1e-9
+    (angle,), (rate,) = mbs.systemData.GetODE2Coordinates(), mbs.systemData.GetODE2Coordinates_t()
+    assert angle == pytest.approx(stops, abs=1e-4 if regularisation else 1e-9)
+    assert abs(rate) < 1e-9
     if regularisation is None:
-        assert [(change.time, int(change.after)) for change in changes] == [
-            (pytest.approx(stops, abs=1e-9), 0)
-        ]
+        assert [change.time for change in changes] == [pytest.approx(stops, abs=1e-9)]
 
 
 @pytest.mark.parametrize("hardening", [0.0, 50.0])
@@ -318,38 +242,33 @@ def test_axes_across_each_other_are_refused_where_a_contact_is_added():
     add_ring_friction(mbs, None, about_x, **RING, master_rotation=X)
 
 
-@pytest.mark.parametrize(
-    "rotation", [2.0 * np.eye(3), -np.eye(3), np.eye(2), "x", [[1.0, 0.0], [0.0]], np.full((3, 3), np.nan)]
-)
 @pytest.mark.parametrize("name", ["master_rotation", "disc_rotation"])
-def test_an_invalid_rotation_is_refused(name, rotation):
+def test_an_invalid_rotation_is_refused(name):
     mbs = new_model()
     disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    with pytest.raises(ValueError, match=f"(?s)^{name} = .*: it must be a rotation matrix of shape"):
-        add_ring_friction(mbs, None, disc, **RING, **{name: rotation})
+    for rotation in (2.0 * np.eye(3), -np.eye(3), np.eye(2), "x", np.full((3, 3), np.nan)):
+        with pytest.raises(ValueError, match=f"(?s)^{name} = .*: it must be a rotation matrix of shape"):
+            add_ring_friction(mbs, None, disc, **RING, **{name: rotation})
 
 
 def test_unsuitable_markers_and_rotors_without_one_axis_are_refused():
     mbs = new_model()
     disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
     first = body_of(mbs, "rotor", np.eye(3), NONE)
-    node = mbs.GetObject(first)["nodeNumber"]
-    apart = mbs.AddObject(
-        items.ObjectRotationalMass1D(nodeNumber=node, inertia=1.0, referencePosition=[0.1, 0.0, 0.0])
-    )
+    node = exu.NodeIndex(int(mbs.GetObject(first)["nodeNumber"]))
+    above = mbs.AddObject(rotor_object(node, [0.0, 0.0, 0.4]))
+    add_ring_friction(mbs, node, disc, **RING)  # both bodies turn about one axis
+    apart = mbs.AddObject(rotor_object(node, [0.1, 0.0, 0.0]))
     slide = mbs.AddNode(items.Node1D())
     mbs.AddObject(items.ObjectMass1D(nodeNumber=slide, mass=1.0))
     wrong = mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=first))
     for master, words in (
         (wrong, "master_node 0 is a MarkerBodyPosition: it must be a MarkerBodyRigid or a MarkerNodeRigid"),
         (exu.MarkerIndex(7), "master_node 7 does not exist: this model has 1 markers"),
-        (
-            exu.NodeIndex(int(node)),
-            "master_node 1 is the Node1D of bodies on different axes: pass the ObjectIndex",
-        ),
+        (node, "master_node 1 is the Node1D of bodies on different axes: pass the ObjectIndex"),
         (slide, "master_node 2 is the Node1D of an ObjectMass1D, which translates"),
     ):
         with pytest.raises(ValueError, match=words):
             add_ring_friction(mbs, master, disc, **RING)
-    for body in (first, apart):
+    for body in (first, above, apart):
         add_ring_friction(mbs, body, disc, **RING)

@@ -16,7 +16,6 @@ FREE = replace(PIN, damping=0.0, friction_force=0.0, disc_speed=1.0, offset=0.0)
 HARDENING = {"hardening": 2.0}
 STOP = {"stop_gap": 0.3, "stop_stiffness": 20.0}
 BOTH = HARDENING | STOP
-LAWS = pytest.mark.parametrize("law", [HARDENING, STOP, BOTH], ids=["hardening", "stop", "both"])
 
 
 def spring_force(system, d):
@@ -25,9 +24,9 @@ def spring_force(system, d):
     return system.stiffness * d + system.hardening * d**3 + stop
 
 
-@LAWS
+@pytest.mark.parametrize("law", [HARDENING, BOTH], ids=["hardening", "with a stop"])
 def test_the_error_of_a_slipping_pin_is_near_the_tolerance_and_falls_with_the_order_of_the_integrator(law):
-    pin, start, times = replace(PIN, **law), [0.3, 0.0, 0.0, 0.2], np.linspace(0.0, 50.0, 26)
+    pin, start, times = replace(PIN, **law), [0.3, 0.0, 0.0, 0.2], np.linspace(0.0, 20.0, 21)
     exact = slide_past_stop(pin, start, times)
     deflections = abs(exact[:, 0] - pin.offset + 1j * exact[:, 1])
     assert deflections.min() < STOP["stop_gap"] < deflections.max()
@@ -42,57 +41,17 @@ def test_the_error_of_a_slipping_pin_is_near_the_tolerance_and_falls_with_the_or
     for integrator, order, step in (("RK67", 6, 0.1), ("GeneralizedAlpha", 2, 0.02)):
         errors = [
             np.abs(
-                simulate_fixed_step(pin, start, [0.0, 20.0], integrator=integrator, step=h).at_end - exact[10]
+                simulate_fixed_step(pin, start, times[[0, -1]], integrator=integrator, step=h).at_end
+                - exact[-1]
             ).max()
             for h in (step, step / 2.0)
         ]
         assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3), errors
 
 
-@pytest.mark.parametrize("engine", [simulate, simulate_with_native_contact])
-def test_a_pin_stays_on_the_whirl_that_its_support_limits_and_comes_to_it_from_near_the_axis(engine):
-    """For X0 = 0: β·Ω·ρ = μN and m·Ω²·ρ = force of the support at ρ."""
-
-    def whirl_of(pin):
-        def excess(radius):
-            frequency = pin.friction_force / (pin.damping * radius)
-            return spring_force(pin, radius) - pin.mass * frequency**2 * radius
-
-        radius = brentq(excess, 1e-3, 1e3, xtol=1e-15, rtol=1e-15)
-        return radius, pin.friction_force / (pin.damping * radius)
-
-    pin = replace(PIN, offset=0.0, **BOTH)
-    radius, frequency = whirl_of(pin)
-    assert frequency < pin.disc_speed
-    times = np.linspace(0.0, 60.0, 31)
-    found = engine(pin, [radius, 0.0, 0.0, frequency * radius], times)
-    z = radius * np.exp(1j * frequency * times)
-    expected = np.column_stack((z.real, z.imag, -frequency * z.imag, frequency * z.real))
-    # Its phase drifts with the error of the frequency.
-    np.testing.assert_allclose(found.states, expected, rtol=0.0, atol=2e-9)
-    pin = replace(pin, damping=0.3)
-    radius, frequency = whirl_of(pin)
-    x, y, vx, vy = engine(pin, [0.05, 0.0, 0.0, 0.0], [0.0, 200.0]).at_end
-    assert abs(complex(x, y)) == pytest.approx(radius, rel=1e-8)
-    assert (x * vy - y * vx) / radius**2 == pytest.approx(frequency, rel=1e-8)
-
-
-@LAWS
-def test_a_pin_at_its_self_centred_equilibrium_stays_there(law):
-    # The spring at the deflection d balances friction: force(d) = μN, and ρ*² = X0² − d² as in eq. 3.
-    pin = replace(PIN, offset=0.6, friction_force=1.0, **law)
-    d = brentq(lambda d: spring_force(pin, d) - pin.friction_force, 0.0, pin.offset, xtol=1e-15)
-    assert d > STOP["stop_gap"]
-    sine = d / pin.offset
-    place = math.sqrt(pin.offset**2 - d**2) * complex(math.sqrt(1.0 - sine**2), sine)
-    start = [place.real, place.imag, 0.0, 0.0]
-    np.testing.assert_allclose(simulate(pin, start, [0.0, 10.0]).at_end, start, atol=1e-8)
-
-
-@LAWS
 @pytest.mark.parametrize("solver", ["explicit", "implicit"])
-def test_a_pin_sticks_until_the_support_pulls_harder_than_friction(law, solver):
-    pin = replace(PIN, friction_force=0.45, disc_speed=0.5, **law)
+def test_a_pin_sticks_until_the_support_pulls_harder_than_friction(solver):
+    pin = replace(PIN, friction_force=0.45, disc_speed=0.5, **BOTH)
     place, omega = 0.35, pin.disc_speed
 
     def load(angle):
@@ -109,22 +68,6 @@ def test_a_pin_sticks_until_the_support_pulls_harder_than_friction(law, solver):
     assert found.phases[0].end == pytest.approx(angle / omega, abs=1e-4)
 
 
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
-def test_a_mass_bounces_off_the_stop_in_half_a_period_of_it(tolerance):
-    speed, gap, stiffness = 0.7, 0.3, 50.0
-    free = replace(FREE, stiffness=0.0, stop_gap=gap, stop_stiffness=stiffness)
-    rate = math.sqrt(stiffness / free.mass)
-    there, back = gap / speed, gap / speed + math.pi / rate
-    times = np.array([0.0, there, there + math.pi / rate / 3.0, back, back + 0.4])
-    along = [0.0, gap, gap + speed / rate * math.sin(math.pi / 3.0), gap, gap - 0.4 * speed]
-    rates = [speed, speed, speed * math.cos(math.pi / 3.0), -speed, -speed]
-    direction = np.exp(0.7j)
-    start = [0.0, 0.0, speed * direction.real, speed * direction.imag]
-    x, y, vx, vy = simulate(free, start, times, tolerance=tolerance).states.T
-    np.testing.assert_allclose(x + 1j * y, np.array(along) * direction, atol=tolerance)
-    np.testing.assert_allclose(vx + 1j * vy, np.array(rates) * direction, atol=3.0 * tolerance)
-
-
 def test_a_stop_is_not_overlooked_where_it_is_hardly_touched():
     # A swing of 0.01 mm beyond the gap, 16 ms long: DOPRI5 would miss it if its steps ignored the stop.
     stiffness, gap, stop_stiffness, amplitude = 1.0, 0.3, 1e4, 0.30001
@@ -139,14 +82,13 @@ def test_a_stop_is_not_overlooked_where_it_is_hardly_touched():
     np.testing.assert_allclose(end, [0.0, 0.0, speed, 0.0], atol=1e-7)
 
 
-@pytest.mark.parametrize("points", [None, 6])
-def test_a_disc_without_friction_circles_with_the_secant_stiffness(points):
-    shape = {"polar_inertia": 0.4, "contact_radius": 0.12, "contact_points": points}
+def test_a_disc_without_friction_circles_with_the_secant_stiffness():
+    shape = {"polar_inertia": 0.4, "contact_radius": 0.12}
     shaft = {"shaft_damping": 0.1, "shaft_speed": 1.0, "disc_speed": 2.0, "friction_force": 0.0}
     disc = DiscOnDisc(mass=1.3, stiffness=1.0, damping=0.0, offset=0.2, **shape, **shaft, **BOTH)
     radius = 0.5
     frequency = math.sqrt(spring_force(disc, radius) / radius / disc.mass)
     period = math.tau / frequency
     start = [disc.offset + radius, 0.0, 0.3, 0.0, frequency * radius, 1.0]
-    end = simulate(disc, start, [0.0, 3.0 * period]).at_end
-    np.testing.assert_allclose(end, np.add(start, [0.0, 0.0, 3.0 * period, 0.0, 0.0, 0.0]), atol=2e-9)
+    end = simulate(disc, start, [0.0, period]).at_end
+    np.testing.assert_allclose(end, np.add(start, [0.0, 0.0, period, 0.0, 0.0, 0.0]), atol=2e-9)

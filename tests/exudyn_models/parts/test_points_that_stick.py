@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 from test_orientations import ACROSS, AXES, REVERSED
 
 from exudyn_models import add_ring_friction, solve_dynamic
-from exudyn_models.forces.laws.places import ring_places
 from exudyn_models.solver.items import IN_MEMORY
 from reference_model import Points
 from reference_model.contact import largest_wrench
@@ -45,8 +44,9 @@ def run(mbs, end, steps=100, **options):
     return solve_dynamic(mbs, settings_of(end, steps), SOLVER, **options)
 
 
-@pytest.mark.parametrize("load", [[1.0, 0.0, 0.01], [0.3, -0.4, -0.05], [0.0, 1.0, 0.0], [0.0, 0.0, 0.1]])
-@pytest.mark.parametrize("plates", [1, 2])
+@pytest.mark.parametrize(
+    ("load", "plates"), [([1.0, 0.0, 0.01], 1), ([0.3, -0.4, -0.05], 2), ([0.0, 0.0, 0.1], 1)]
+)
 def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
     """The sensors show the load and its share of the capacity. Beyond static friction the body slides."""
     angle, ratio = 0.7, 1.25
@@ -57,12 +57,11 @@ def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
     mbs, node, contact = body_on_feet(angle=angle, static_ratio=ratio, plates=plates)
     sensors = [contact.add_sensor(one) for one in ("transmitted_moment", "radial_force", "capacity_share")]
     push(mbs, node, load, lambda t: size * t)
-    assert run(mbs, 1.0, updateInitialValues=True) == []
+    assert run(mbs, 1.0, 50, updateInitialValues=True) == []
     held, pushed, share = (mbs.GetSensorValues(sensor) for sensor in sensors)
     assert [*pushed[:2], float(held)] == pytest.approx(-size * np.array(load), abs=1e-12)
     assert float(share) == pytest.approx(1.0 / ratio, rel=1e-6)
-    settings = settings_of(1.5, 50, start=1.0)
-    changes = solve_dynamic(mbs, settings, SOLVER)
+    changes = solve_dynamic(mbs, settings_of(1.5, 25, start=1.0), SOLVER)
     assert len(changes) > 1
     first, second, *_ = (
         change.time for change in changes
@@ -121,9 +120,7 @@ def test_points_lie_where_the_regularised_contact_has_them_for_any_axes_of_the_d
     np.testing.assert_allclose(*ends, rtol=0.0, atol=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("feet", "solver"), [(ring_places(0.05, 3), SOLVER), (FEET, SOLVER), (TWO_FEET, GENERALISED)]
-)
+@pytest.mark.parametrize(("feet", "solver"), [(FEET, SOLVER), (TWO_FEET, GENERALISED)])
 def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_together(feet, solver):
     """The net force of the points loads the joint, whose reaction loads the points."""
     weight, coefficient, inertia, spin, rate = 40.0, 0.4, 0.02, 3.0, 3.0

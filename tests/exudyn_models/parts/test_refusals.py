@@ -31,7 +31,6 @@ WRONG = [
     (RING, {"friction_coefficient": -1.0}, "friction_coefficient = -1: it must be >= 0"),
     (RING, {"friction_coefficient": "steel"}, "= 'steel': it must be a number"),
     (RING, {"normal_load": -1.0}, "normal_load = -1 N: it must be >= 0"),
-    (RING, {"normal_load": math.nan}, "normal_load = nan"),
     (RING, {"contact_radius": -0.1}, "contact_radius = -0.1 m"),
     (RING, {"contact_radius": None}, "contact_radius = None: pass contact_radius, both radii of an annulus"),
     (RING, {"contact_points": 0}, "contact_points = 0"),
@@ -51,19 +50,18 @@ WRONG = [
     (RING, {"held": 4}, "held = 4: it must be None, or the number of a point, 1 to 3"),
     (RING, {"held": 1, "contact_points": None}, "held = 1: it must be None without contact points"),
     (RING, {"static_ratio": 0.9}, "static_ratio = 0.9: static divided by sliding friction must be >= 1"),
-    (RING, {"static_ratio": math.nan}, "static_ratio = nan"),
     (RING, {"plates": 0}, "plates = 0: it must be a whole number >= 1"),
-    (RING, {"plates": 1.5}, "plates = 1.5: it must be a whole number >= 1"),
-    (RING, {"friction_coefficient": [0.3, 0.2]}, r"it must be rows \[slip speed"),
     (RING, {"friction_coefficient": [[0.0, 0.3], [1.0]]}, r"rows \[slip speed"),
     (RING, {"friction_coefficient": [[0.1, 0.3], [1.0, 0.2]]}, "the first at 0 m/s"),
     (RING, {"friction_coefficient": [[0.0, 0.3], [1.0, -0.2]]}, "must be finite and >= 0"),
     (RING, {"friction_coefficient": [[0.0, 0.3], [0.0, 0.2]]}, "slip speeds must increase"),
     (RING, {"normal_load": [[0.0, 0.3], [1.0, 0.2]]}, "normal_load = .*: it must be a number"),
-    (RING, {"normal_load": lambda t: 1.0}, f"normal_load takes `t`: {BY_NAME}"),
-    (RING, {"friction_coefficient": lambda time, speed: 1.0}, "takes `speed`"),
+    (
+        RING,
+        {"friction_coefficient": lambda time, speed: 1.0},
+        f"friction_coefficient takes `speed`: {BY_NAME}",
+    ),
     (RING, {"normal_load": lambda *arguments: 1.0}, r"takes `\*arguments`"),
-    (RING, {"normal_load": lambda **options: 1.0}, r"takes `\*\*options`"),
     (RING, {"normal_load": lambda time, /: 1.0}, "takes `time`: .* only arguments named"),
     (RING, {"friction_coefficient": math.sin}, "friction_coefficient takes `x`"),
     (RING, {"normal_load": max}, "= <built-in function max>: it has no readable signature"),
@@ -76,29 +74,22 @@ WRONG = [
     (RING, {"thermal_node": 3}, "thermal_node = 3: it must be a result of add_thermal_node"),
     (RING, {"pressure": "wear"}, "pressure = 'wear': it needs an annulus"),
     (ANNULUS, {"inner_radius": -0.1}, "inner_radius = -0.1 m: it must be >= 0"),
-    (ANNULUS, {"inner_radius": None}, "inner_radius = None: it must be a number"),
     (ANNULUS, {"outer_radius": 0.08}, "outer_radius = 0.08 m: it must be > inner_radius = 0.08 m"),
-    (ANNULUS, {"outer_radius": math.inf}, "outer_radius = inf"),
     (ANNULUS, {"contact_radius": 0.1}, "= 0.1: it cannot be combined with inner_radius"),
     (ANNULUS, {"contact_points": 6}, "= 6: it cannot be combined with inner_radius"),
-    (ANNULUS, {"regularisation": -1.0}, "regularisation = -1 m/s"),
     (ANNULUS, {"pressure": "even"}, "pressure = 'even': it must be 'uniform', 'wear' or a func"),
     (ANNULUS, {"pressure": lambda r: r - 0.1}, r"pressure\(0.08 m\) = -0.02: it must be >= 0"),
     (ANNULUS, {"pressure": lambda r: 0.0}, "it must be a smooth function, > 0 somewhere"),
     (ANNULUS, {"pressure": lambda r: 1.0 + (r < 0.1)}, "deviates by 0.2 of its largest share"),
-    (ANNULUS, {"pressure": lambda r: math.nan}, r"pressure\(0.08 m\) = nan"),
     (NATIVE, {"friction_coefficient": -1.0}, "friction_coefficient = -1: it must be >= 0"),
     (NATIVE, {"normal_load": -1.0}, "normal_load = -1 N: it must be >= 0"),
     (NATIVE, {"contact_points": None}, "contact_points = None"),
     (NATIVE, {"reach": 0.0}, "reach = 0 m: it must be > 0"),
     (SUPPORT, {"stiffness": -1.0}, "stiffness = -1 N/m: it must be >= 0"),
-    (SUPPORT, {"damping": math.nan}, "damping = nan: it must be finite"),
     (SUPPORT, {"hardening": -2.0}, "hardening = -2 N/m³: it must be >= 0"),
     (SUPPORT, {"stop_gap": -0.1}, "stop_gap = -0.1 m: it must be >= 0"),
     (SUPPORT, {"stop_stiffness": math.inf}, "stop_stiffness = inf: it must be finite"),
-    (SUPPORT, {"stop_stiffness": "stiff"}, "stop_stiffness = 'stiff': it must be a number"),
     (SUPPORT, {"offset": 0.1}, "offset = 0.1: it must be two numbers, x and y in m"),
-    (SUPPORT, {"offset": (0.0,) * 3}, r"offset = \(0.0, 0.0, 0.0\): it must be two numbers"),
     (SUPPORT, {"offset": (0.0, math.nan)}, r"offset\[1\] = nan: it must be finite"),
 ]
 
@@ -139,40 +130,38 @@ PARTS = {
     "native friction": (*NATIVE, "master_node", "Node1D or NodeRigidBody2D"),
     "support": (*SUPPORT, "base_node", f"Node1D, {KINDS}$"),
 }
+UNKNOWN_BODIES = {
+    exu.NodeIndex(7): "7 does not exist: this model has 3 nodes",
+    exu.NodeIndex(): "-1 does not exist: this model has 3 nodes",
+    exu.ObjectIndex(7): "7 does not exist: this model has 3 objects",
+    exu.MarkerIndex(1): "1 does not exist: this model has 0 markers",
+    1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
+    "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
+    exu.ObjectIndex(2): "2 is an ObjectMassPoint: it must be a body with a node",
+}
 
 
 @pytest.mark.parametrize("part", PARTS)
-@pytest.mark.parametrize("is_disc", [False, True])
-def test_nodes(part, is_disc):
+def test_nodes(part):
     add, right, master_name, kinds = PARTS[part]
     mbs = new_model()
-    nodes = [rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)]
-    name = "disc_node" if is_disc else master_name
-    mass = mbs.AddObject(items.ObjectMassPoint(nodeNumber=mbs.AddNode(items.NodePoint())))
-    refused = {
-        exu.NodeIndex(7): "7 does not exist: this model has 3 nodes",
-        exu.NodeIndex(): "-1 does not exist: this model has 3 nodes",
-        exu.ObjectIndex(7): "7 does not exist: this model has 3 objects",
-        exu.MarkerIndex(1): "1 does not exist: this model has 0 markers",
-        1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
-        "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
-        mass: "",
-    }
-    if not is_disc:
-        refused[exu.NodeIndex(2)] = f"2 is a NodePoint: it must be a {kinds}"
-    elif part != "native friction":
-        refused[None] = "= None is of type NoneType"
-    for index, message in refused.items():
-        pair = [nodes[0], index] if is_disc else [index, nodes[1]]
+    master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
+    point = mbs.AddNode(items.NodePoint())
+    mbs.AddObject(items.ObjectMassPoint(nodeNumber=point))
+    wrong = [(master_name, index, disc, message) for index, message in UNKNOWN_BODIES.items()]
+    wrong += [("disc_node", master, index, message) for index, message in UNKNOWN_BODIES.items()]
+    wrong += [(master_name, point, disc, f"2 is a NodePoint: it must be a {kinds}")]
+    wrong += [
+        ("disc_node", disc, same, f"1 is also the {master_name}") for same in (disc, exu.ObjectIndex(1))
+    ]
+    if part != "native friction":
+        wrong += [("disc_node", master, None, "= None is of type NoneType")]
+    for name, first, second, message in wrong:
         with pytest.raises(ValueError, match=f"^{name} {message}"):
-            add(mbs, *pair, **right)
-    for same in (nodes[1], exu.ObjectIndex(1)):
-        with pytest.raises(ValueError, match=f"disc_node 1 is also the {master_name}"):
-            add(mbs, nodes[1], same, **right)
+            add(mbs, first, second, **right)
 
 
-@pytest.mark.parametrize("what", ["body", "ground", "joint", "friction", "spring with a function"])
-def test_objects_without_potential_energy(what):
+def test_objects_without_potential_energy():
     mbs = new_model()
     node, ground = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3), mbs.AddObject(items.ObjectGround())
     markers = [
@@ -180,23 +169,18 @@ def test_objects_without_potential_energy(what):
         mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)),
     ]
     springs = {"markerNumbers": markers, "stiffness": [1.0, 1.0, 0.0]}
-    joint = items.ObjectJointSpherical(markerNumbers=markers, constrainedAxes=[1, 1, 0])
-    pulling = items.CartesianSpringDamper(**springs, springForceUserFunction=lambda *arguments: [0.0] * 3)
-    wrong = {
-        "body": lambda: 0,
-        "ground": lambda: ground,
-        "joint": lambda: mbs.AddObject(joint),
-        "friction": lambda: add_ring_friction(mbs, None, node, **POINTS).item,
-        "spring with a function": lambda: mbs.AddObject(pulling),
-    }[what]()
     right = mbs.AddObject(items.CartesianSpringDamper(**springs))
+    pulling = items.CartesianSpringDamper(**springs, springForceUserFunction=lambda *arguments: [0.0] * 3)
+    friction = add_ring_friction(mbs, None, node, **POINTS).item
     balance = {"gains": {}, "losses": {"none": lambda mbs, t: 0.0}}
-    for number, message in (
-        (wrong, rf"spring_energy of object {int(wrong)}: this \w+ has no potential energy"),
-        (99, r"spring_energy\(99\): it must be the ObjectIndex of an object of this"),
-    ):
+    for number in (ground, friction, mbs.AddObject(pulling)):
+        message = rf"spring_energy of object {int(number)}: this \w+ has no potential energy"
         with pytest.raises(ValueError, match=message):
             add_energy_balance(mbs, **balance, stored=[spring_energy(right), spring_energy(number)])
+    with pytest.raises(
+        ValueError, match=r"spring_energy\(99\): it must be the ObjectIndex of an object of this"
+    ):
+        add_energy_balance(mbs, **balance, stored=[spring_energy(99)])
     add_energy_balance(mbs, **balance, stored=[spring_energy(right)])
 
 
