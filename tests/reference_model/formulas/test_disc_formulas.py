@@ -67,17 +67,10 @@ def test_23_is_the_average_of_three_terms_of_22_and_not_of_the_two_printed_terms
     assert np.add(two, missing) == pytest.approx(expected, abs=1e-14)
 
 
-DISCS = [
-    mirrored(FIG8),
-    replace(FIG8, offset=-0.1),
-    replace(FIG8, shaft_speed=3.0),
-    LARGE,
-    mirrored(LARGE),
-]
-
-
-@pytest.mark.parametrize("share", [1e-3, 0.2, 0.7, 0.98])
-@pytest.mark.parametrize("disc", DISCS)
+@pytest.mark.parametrize("share", [1e-3, 0.7, 0.98])
+@pytest.mark.parametrize(
+    "disc", [replace(FIG8, offset=-0.1), replace(FIG8, shaft_speed=3.0), mirrored(LARGE)]
+)
 def test_positions_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc, share):
     disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
     found = formulas.positions_by_26(disc)
@@ -106,7 +99,7 @@ def test_26_gives_the_equilibrium_of_a_pin_if_shaft_and_master_disc_turn_alike()
 
 @pytest.mark.parametrize("law", [Ring, ThreeTermRing])
 @pytest.mark.parametrize("alpha", [0.05, 0.7, 0.9, 1.5])
-@pytest.mark.parametrize("disc", [FIG11, mirrored(FIG11), replace(FIG11, shaft_speed=1.75, damping=0.03)])
+@pytest.mark.parametrize("disc", [mirrored(FIG11), replace(FIG11, shaft_speed=1.75, damping=0.03)])
 def test_whirl_at_a_ratio_is_one_of_the_whirls_at_its_load(disc, alpha, law):
     contact = law(disc.contact_radius)
     load, radius, spin = formulas.whirl_at(disc, alpha, contact)
@@ -145,33 +138,32 @@ def test_held_force_lies_on_the_limit_surface(torque_share):
     assert replace(held, friction_force=0.4) == formulas.pin_of(disc)
 
 
-REFUSED = [
-    (formulas.positions_by_26, {"stiffness": 0.0}, "stiffness = 0"),
-    (formulas.positions_by_26, {"disc_speed": 0.0}, "disc_speed = 0"),
-    (formulas.positions_by_26, {"shaft_damping": 0.0}, "shaft_damping = 0"),
-    (formulas.positions_by_26, {"offset": 0.0}, "offset = 0"),
-    (lambda disc: formulas.polar_angle(disc, 0.2, 0.0), {}, r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"),
-    (formulas.held_pin, {"friction_force": 0.02}, r"holds only 0\.0024 N m of the shaft's 0\.003 N m"),
-    (formulas.held_pin, {"contact_points": 6}, "contact_points = 6"),
-]
-WITHOUT_A_WHIRL = [
-    ({}, 0.0, "alpha = 0 rad"),
-    ({}, 1.6, r"alpha = 1\.6 rad"),
-    ({"shaft_speed": 1.5}, 1.0, "disc_speed - shaft_speed = 0 rad/s"),
-    ({"shaft_damping": 0.0}, 1.0, "shaft_damping = 0"),
-    ({"disc_speed": 0.7}, 1.0, r"disc_speed = 0\.7 rad/s"),
-    ({"damping": 0.0}, 1.0, "damping = 0"),
-    ({"contact_points": 6}, 1.0, "contact_points = 6"),
-]
+def at_distance(distance):
+    return lambda disc: formulas.polar_angle(disc, distance, 0.0)
 
 
-@pytest.mark.parametrize(("formula", "changes", "message"), REFUSED)
-def test_disc_outside_the_domain_of_a_formula_is_refused(formula, changes, message):
+def at_ratio(alpha):
+    return lambda disc: formulas.whirl_at(disc, alpha)
+
+
+@pytest.mark.parametrize(
+    ("formula", "disc", "changes", "message"),
+    [
+        *((formulas.positions_by_26, FIG8, {name: 0.0}, f"{name} = 0") for name in (
+            "stiffness", "disc_speed", "shaft_damping", "offset",
+        )),
+        (at_distance(0.2), FIG8, {}, r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"),
+        (formulas.held_pin, FIG8, {"friction_force": 0.02}, r"holds only 0\.0024 N m of the shaft's 0\.003 N m"),
+        (formulas.held_pin, FIG8, {"contact_points": 6}, "contact_points = 6"),
+        (at_ratio(0.0), FIG11, {}, "alpha = 0 rad"),
+        (at_ratio(1.6), FIG11, {}, r"alpha = 1\.6 rad"),
+        (at_ratio(1.0), FIG11, {"shaft_speed": 1.5}, "disc_speed - shaft_speed = 0 rad/s"),
+        (at_ratio(1.0), FIG11, {"shaft_damping": 0.0}, "shaft_damping = 0"),
+        (at_ratio(1.0), FIG11, {"disc_speed": 0.7}, r"disc_speed = 0\.7 rad/s"),
+        (at_ratio(1.0), FIG11, {"damping": 0.0}, "damping = 0"),
+        (at_ratio(1.0), FIG11, {"contact_points": 6}, "contact_points = 6"),
+    ],
+)  # fmt: skip
+def test_disc_outside_the_domain_of_a_formula_is_refused(formula, disc, changes, message):
     with pytest.raises(ValueError, match=message):
-        formula(replace(FIG8, **changes))
-
-
-@pytest.mark.parametrize(("changes", "alpha", "message"), WITHOUT_A_WHIRL)
-def test_ratio_without_a_whirl_is_refused(changes, alpha, message):
-    with pytest.raises(ValueError, match=message):
-        formulas.whirl_at(replace(FIG11, **changes), alpha)
+        formula(replace(disc, **changes))
