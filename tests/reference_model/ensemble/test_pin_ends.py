@@ -236,6 +236,7 @@ def test_distances_that_do_not_shrink_do_not_count_as_converged():
     assert not converged(1e-5, 1e-5, 4e-5, 1.0)
     assert not converged(1e-5, 4e-5, 1e-5, 1.0)
     assert converged(1e-8, 3e-8, 2e-8, 1.0)
+    assert not converged(3e-8, 2e-8, 1e-8, 1.0)  # near a saddle
 
 
 def test_starts_next_to_the_basin_boundary_end_on_their_own_side():

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from disc_equations import STICKY
-from plain_engines import integrate
+from plain_engines import integrate, stuck_state
 
-from reference_model import PinOnDisc, power_balance, simulate
+from reference_model import PinOnDisc, plain, power_balance, simulate
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.formulas import pin as formulas
-from reference_model.trajectory import Trajectory
+from reference_model.trajectory import Phase, Trajectory
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 CENTRED = replace(FIG_5, offset=0.0)
@@ -78,6 +78,24 @@ def test_motion_with_smooth_friction_balances_with_the_heat_of_smooth_friction(e
 
 def viscous_below(pin, slip_speed):
     return lambda slip: -pin.friction_force * slip / max(math.hypot(*slip), slip_speed)
+
+
+def test_creep_of_an_engine_in_stick_produces_the_heat_of_holding_force_and_moment():
+    disc = replace(
+        STICKY,
+        friction_force=0.3,
+        disc_speed=0.7,
+        offset=0.05,
+        shaft_speed=0.6,
+        shaft_damping=0.05,
+        contact_points=6,
+    )
+    times = np.linspace(0.0, 5.0, 501)
+    creeping = plain.simulate(disc, stuck_state(disc, 0.03, 0.02), times, tolerance=1e-4)
+    stick = Phase("stick", 0.0, 5.0, creeping.states[0])
+    claimed = Trajectory(disc, times, creeping.states.copy(), (stick,), creeping.solution)
+    balance = power_balance(claimed)
+    assert np.abs(balance.residual).max() < 1e-2 * balance.friction_heat[-1]
 
 
 SLIPPING = [0.5, 0.3, 0.0, 0.0, 0.15, 0.4]

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from plain_engines import pull_on_stuck_pin, stuck_state, turned_with_disc
 
@@ -58,6 +58,7 @@ def in_compiled_code(pin, z):
     ],
     ids=["search", "closed form", "compiled", "formula"],
 )
+@settings(max_examples=100)
 @given(data=st.data())
 def test_release_is_the_first_time_when_the_pull_exceeds_friction(release, linear, data):
     pin, z = data.draw(stuck_pins(linear))
