@@ -61,7 +61,7 @@ def starts(n, reach, seed=0):
     ],
 )  # fmt: skip
 def test_early_end_states_agree_with_runs_of_full_length(pin, reach, duration, expected):
-    states = starts(100, reach)
+    states = starts(200, reach)
     early = simulate_ensemble(pin, states, duration=duration)
     full = simulate_ensemble(pin, states, duration=duration, early_end=False)
     without_known_ends = simulate_ensemble(
