@@ -75,6 +75,7 @@ def assert_same_eigenvalues(found, expected, tolerance=1e-12):
         left.remove(nearest)
 
 
-def mirrored(disc):
-    """Return the disc whose motions are mirrored in the x axis."""
-    return replace(disc, disc_speed=-disc.disc_speed, shaft_speed=-disc.shaft_speed)
+def mirrored(system):
+    """Return the pin or disc whose motions are mirrored in the x axis."""
+    shaft = {"shaft_speed": -system.shaft_speed} if isinstance(system, DiscOnDisc) else {}
+    return replace(system, disc_speed=-system.disc_speed, **shaft)

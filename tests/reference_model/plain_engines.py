@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 from plain_slip import slide
-from scipy.optimize import brentq
 
 from reference_model import plain
 from reference_model.systems import DiscOnDisc
@@ -30,6 +29,12 @@ def stuck_state(system, x, y):
     return np.array([x, y, -speed * y, speed * x])
 
 
+def as_disc(pin, points):
+    """Return a disc without relative spin that moves like the pin."""
+    shape = {"polar_inertia": 0.02, "contact_radius": 0.2, "shaft_damping": 0.0, "shaft_speed": 0.0}
+    return DiscOnDisc(**vars(pin), **shape, contact_points=points)
+
+
 def turned_with_disc(pin, state, time):
     """Return the state of a stuck pin after ``time``."""
     c, s = math.cos(pin.disc_speed * time), math.sin(pin.disc_speed * time)
@@ -50,17 +55,6 @@ def rates(pin, state, friction):
 def of_vector(friction):
     """Convert a force as a function of the slip velocity in m/s, shape (2,), to a friction of ``plain``."""
     return lambda slip_x, slip_y, *_: (*friction(np.array([slip_x, slip_y])), 0.0)
-
-
-def release_after(pin, state, longest):
-    """Return the time until the release of a stuck pin by a fine grid and a bracketed root; 0 without a root."""
-
-    def excess(time):
-        return math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, state, time))) - pin.friction_force
-
-    grid = np.linspace(0.0, longest, 2001)
-    first = next((i for i, time in enumerate(grid) if excess(time) > 0.0), 0)
-    return brentq(excess, grid[first - 1], grid[first], xtol=1e-15) if first else 0.0
 
 
 def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", tolerance=1e-12):

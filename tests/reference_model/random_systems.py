@@ -15,7 +15,7 @@ CONTACTS = ("pin", "ring", "points")
 SUPPORTS = ("linear", "hardening", "stop", "both")
 COURSES = ("dragged", "fast", "to and fro", "creeping", "thrown")
 SYSTEMS = len(CONTACTS) * len(SUPPORTS) * len(COURSES)
-TIMES = np.linspace(0.0, 40.0, 81)
+TIMES = np.linspace(0.0, 25.0, 51)
 
 
 @dataclass(frozen=True)

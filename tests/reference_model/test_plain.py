@@ -8,7 +8,6 @@ import pytest
 
 from compare.claims.parameters import FIG5, FIG11
 from reference_model import SimulationError, plain, simulate
-from reference_model.contact.contact_law import Ring
 
 STUCK_DISC = replace(FIG11, friction_force=0.3, disc_speed=0.7, shaft_speed=0.6, offset=0.05)
 MOTIONS = {
@@ -20,26 +19,17 @@ MOTIONS = {
     "a ring that comes to stick": (STUCK_DISC, [0.3, 0.0, 0.0, 0.0, 0.1, 0.5]),
     "points that come to stick": (replace(STUCK_DISC, contact_points=6), [0.3, 0.0, 0.0, 0.0, 0.1, 0.5]),
 }
-TIMES = np.linspace(0.0, 8.0, 9)
+TIMES = np.linspace(0.0, 6.0, 7)
 
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_motions_agree_with_the_reference_within_the_estimated_error(motion):
     system, start = MOTIONS[motion]
     exact = simulate(system, start, TIMES, tolerance=1e-11).states
-    coarse, fine = (
-        plain.simulate(system, start, TIMES, tolerance=tolerance).states for tolerance in (1e-4, 1e-6)
-    )
+    coarse, fine = (plain.simulate(system, start, TIMES, tolerance=size).states for size in (1e-4, 1e-6))
     estimate = np.max(np.abs(fine - coarse))
     # ε causes an error of about 1e-5 of the motion, and the steps 1e-7.
     assert np.max(np.abs(fine - exact)) < min(estimate, 5e-5)
-
-
-@pytest.mark.parametrize("slip", [(0.01, 0.02, 0.5, 0.3), (0.3, -0.1, -0.5, 2.0)])
-def test_the_law_of_a_ring_is_the_limit_of_points(slip):
-    R = FIG11.contact_radius
-    law, points = plain.by_law(0.5, Ring(R)), plain.on_ring(0.5, R, 2000, 0.0)
-    assert law(*slip) == pytest.approx(points(*slip), abs=1e-13)
 
 
 def test_a_single_time_is_the_start():

@@ -2,12 +2,15 @@
 
 import cmath
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from disc_equations import STICKY, eq_23
 from hypothesis import given
 from hypothesis import strategies as st
 
+from reference_model import plain
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
 from reference_model.contact.points import Points, PointsOnRing
@@ -58,6 +61,25 @@ def nearest_to_rest(law, motion):
     inner = law.inner_radius if isinstance(law, Annulus) else R
     slowest = max(abs(slip) - R * abs(spin), inner * abs(spin) - abs(slip), 0.0)
     return slowest / (abs(slip) + R * abs(spin))
+
+
+PRINTED = [(law, plain.on_ring(1.0, R, law.points, 0.0)) for law in LAWS if isinstance(law, PointsOnRing)]
+PRINTED += [
+    (RING, plain.on_ring(1.0, R, 1024, 0.0)),
+    (ThreeTermRing(R), eq_23(replace(STICKY, friction_force=1.0))),
+]
+
+
+@pytest.mark.parametrize(("law", "printed"), PRINTED, ids=[name(law) for law, _ in PRINTED])
+@given(motion=motions())
+def test_friction_is_that_of_20_and_23(law, printed, motion):
+    slip, spin, angle = motion
+    nearest = nearest_to_rest(law, motion)
+    if law is RING and nearest < 0.05:
+        return  # the error of 1024 points is of order ratio^1024
+    x, y, moment = printed(slip.real, slip.imag, spin, angle)
+    rounded = 1e-14 + 1e-15 / max(nearest, 1e-15)
+    assert friction(law, motion) == pytest.approx((x, y, moment / R), abs=rounded)
 
 
 @laws

@@ -21,7 +21,7 @@ RADIUS = 0.3
 FEET = Points([(0.3, 0.0, 0.5), (-0.2, 0.1, 0.2), (-0.1, -0.2, 0.3)])
 ROD = Points([(-0.3, 0.0, 0.2), (-0.1, 0.0, 0.3), (0.0, 0.0, 0.1), (0.3, 0.0, 0.4)])
 TWO = Points([(-0.1, 0.0, 0.3), (0.3, 0.0, 0.7)])
-CONTACTS = {f"{n} points": PointsOnRing(RADIUS, n) for n in (3, 4, 5, 6, 24)}
+CONTACTS = {f"{n} points": PointsOnRing(RADIUS, n) for n in (3, 6, 24)}
 CONTACTS |= {"three feet": FEET, "rod": ROD, "two points": TWO}
 
 
@@ -41,7 +41,7 @@ def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(law):
         assert limit.margins(np.array([-1.001 * force]), -1.001 * moment)[0] < 0.0
 
 
-SOME = pytest.mark.parametrize("law", [CONTACTS["3 points"], CONTACTS["6 points"], FEET, ROD])
+SOME = pytest.mark.parametrize("law", [CONTACTS["3 points"], FEET, ROD])
 
 
 @SOME
@@ -78,7 +78,7 @@ def test_breakaway_on_a_flat_face_is_a_rotation_about_one_point(law):
 
 
 def test_force_without_moment_is_held_up_to_full_friction():
-    limit = PointsLimit.of(CONTACTS["5 points"])
+    limit = PointsLimit.of(CONTACTS["6 points"])
     forces = np.array([0.0, 0.5, 0.999999, 1.000001, 1.5]) * np.exp(0.4j)
     assert np.array_equal(limit.margins(forces, 0.0) > 0.0, [True, True, True, False, False])
     # The margin continues smoothly beyond, because the squared moment has the slope −R².
@@ -99,8 +99,7 @@ def test_largest_load_in_the_direction_of_a_load_that_drives_slip_is_this_load(l
     for _ in range(30):
         force, moment = wrench_of_slip(law, complex(*rng.normal(size=2)) * RADIUS, rng.normal())
         found, about = largest_wrench(law, 3.7 * force, 3.7 * moment)
-        assert abs(found - force) < 1e-14
-        assert abs(about - moment) < 1e-14
+        assert (found, about) == pytest.approx((force, moment), rel=0.0, abs=1e-14)
 
 
 @pytest.mark.parametrize("law", ALL.values(), ids=ALL)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from reference_model.contact import Points, polygon_patch
+from reference_model.contact import polygon_patch
 
 TRIANGLE = [(0.3, 0.8), (1.0, 0.0), (0.0, 0.0)]  # clockwise
 ANGLE = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.4), (0.4, 0.4), (0.4, 1.0), (0.0, 1.0)]
@@ -37,17 +37,6 @@ def friction_of_polygon(corners, pole):
         distance += d / 6.0 * (end * math.hypot(end, d) - start * math.hypot(start, d) + d * d * turn)
         direction += d / 2.0 * (farther - 1j * d * turn) * along
     return -1j * direction / area, -distance / area
-
-
-def test_two_points_resist_their_own_slip_with_their_own_shares():
-    two = Points([(-0.1, 0.0, 0.3), (0.3, 0.0, 0.7)])
-    force, moment = two.force_and_moment(0j, -2.0, 0.0)  # a turn about a point between them
-    assert force == pytest.approx(0.3j - 0.7j, abs=1e-15)
-    assert moment == pytest.approx(-0.1 * 0.3 - 0.3 * 0.7, abs=1e-15)
-    # After a quarter turn they lie at −0.1i and 0.3i, and slip with 4 + 3i and with 3i.
-    force, moment = two.force_and_moment(3.0 + 3.0j, -10.0, math.pi / 2.0)
-    assert force == pytest.approx(-0.3 * (0.8 + 0.6j) - 0.7j, abs=1e-14)
-    assert moment == pytest.approx(-0.1 * 0.3 * 0.8, abs=1e-14)
 
 
 @POLYGONS

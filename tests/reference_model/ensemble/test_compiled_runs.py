@@ -1,13 +1,15 @@
 """Motions and phases of compiled runs and ensembles, against the plain reference and closed forms."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from plain_engines import stuck_state
+from random_systems import SYSTEMS, TIMES, RandomMotion
 
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
-from reference_model import DiscOnDisc, PinOnDisc, Ring, SimulationError, simulate, sticking_radius
+from reference_model import DiscOnDisc, PinOnDisc, SimulationError, simulate
 from reference_model.ensemble import recording, simulate_ensemble, single_run
 from reference_model.ensemble.disc import driver
 from reference_model.motion.exact import simulate_with
@@ -21,6 +23,9 @@ STICKING = DiscOnDisc(
 )  # fmt: skip
 HARD = replace(FIG9, friction_force=2.0 * FIG9.friction_force)
 
+MOST_TOLERANCES = 68.0
+"""Largest error of compiled runs in tolerances, which the documentation of ``simulate`` states."""
+
 
 def on_six(disc):
     return replace(disc, contact_points=6)
@@ -31,64 +36,35 @@ def lasting(motion):
     return [phase for phase in motion.phases if phase.end - phase.start > 1e-12 * motion.times[-1]]
 
 
-@pytest.mark.parametrize(
-    ("system", "start", "end", "sticks"),
-    [
-        (FIG5, SECOND, 100.0, 9),
-        (STICKING, stuck_state(STICKING, -0.08, 0.0), 100.0, 10),
-        (HARD, stuck_state(HARD, -0.02, 0.0), 100.0, 1),
-        (on_six(HARD), stuck_state(HARD, -0.02, 0.0), 40.0, 1),
-        (on_six(FIG11), stuck_state(FIG11, 0.1, 0.0), 100.0, 0),
-        (FIG8, [0.3, 0.0, 0.0, 0.1, 0.0, 0.5], 100.0, 0),
-        (FIG11, [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], 100.0, 0),
-        (on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], 100.0, 0),
-    ],
-    ids=[
-        "Fig. 5", "sticking ring", "ring of Fig. 9 that starts stuck", "six points of Fig. 9 that start stuck",
-        "six points of Fig. 11 that pivot", "ring of Fig. 8", "ring of Fig. 11", "six points of Fig. 11",
-    ],
-)  # fmt: skip
-def test_motion_and_phases_agree_with_the_plain_reference(system, start, end, sticks):
-    times = np.linspace(0.0, end, 301)
-    plain, found = simulate(system, start, times), simulate(system, start, times, compiled=True)
-    assert len(plain.stick_phases) >= sticks
-    # A step has an error of up to 10 % of the tolerance, and errors decay in about 30 s.
-    assert np.max(np.abs(found.states - plain.states)) < 2e-8
+SEEDS = range(0, SYSTEMS, 2)
+
+
+@functools.cache
+def on_linear_support(seed):
+    """Return the compiled run of a random system on the support that compiled code covers."""
+    random = RandomMotion.of(seed)
+    system = replace(random.system, hardening=0.0, stop_stiffness=0.0)
+    system = on_six(system) if getattr(system, "contact_points", None) else system
+    return simulate(system, random.start, TIMES - 7.0, compiled=True)
+
+
+def test_random_systems_take_little_work():
+    """The bound is 5 % above the measured 7,175 steps; a method of lower order would take more."""
+    assert sum(on_linear_support(seed).solution.steps for seed in SEEDS) < 7_540
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_motions_and_phases_of_random_systems_agree_with_the_reference(seed):
+    found = on_linear_support(seed)
+    start, times = RandomMotion.of(seed).start, found.times
+    plain = simulate(found.system, start, times, tolerance=1e-11)
+    assert np.abs(found.states - plain.states).max() < MOST_TOLERANCES * 1e-9
+    assert found.states[0].tolist() == start.tolist()
+    assert (found.phases[0].start, found.phases[-1].end) == (times[0], times[-1])
     assert [phase.kind for phase in found.phases] == [phase.kind for phase in lasting(plain)]
     for mine, other in zip(found.phases, lasting(plain), strict=True):
-        assert (mine.start, mine.end) == pytest.approx((other.start, other.end), abs=5e-8)
-        np.testing.assert_allclose(mine.initial_state, other.initial_state, atol=5e-8)
-
-
-@pytest.mark.parametrize(
-    ("pin", "start"),
-    [
-        (replace(FIG5, disc_speed=-1.5), (0.3, 0.1, -0.2, 0.3)),
-        (replace(FIG5, offset=-0.1), (-0.1, 0.0, -0.03, 0.0)),
-        (replace(FIG5, disc_speed=0.4, friction_force=0.12), (0.3, 0.1, -0.2, 0.3)),
-        (replace(FIG5, disc_speed=0.0), (0.3, 0.1, -0.2, 0.3)),
-        (replace(FIG5, damping=3.0, friction_force=0.3), (0.3, -0.4, 1.0, 0.3)),
-        (replace(FIG5, damping=0.0, offset=0.0), (0.3, 0.0, -0.2, 0.1)),
-        (replace(FIG5, friction_force=0.0), (0.3, 0.0, -0.2, 0.1)),
-        (replace(FIG5, stiffness=0.0), (0.3, 0.0, -0.2, 0.1)),
-        (replace(FIG5, mass=1e-3, offset=1e3), (900.0, 0.0, 1.0, 0.0)),
-        (replace(FIG5, friction_force=0.25), (0.12, 0.1, -0.15, 0.18)),
-    ],
-    ids=[
-        "clockwise", "offset to the left", "slow disc", "disc at rest", "overdamped", "undamped, centred",
-        "no friction", "no springs", "light and far", "permanently stuck",
-    ],
-)  # fmt: skip
-def test_motion_of_other_pins_from_any_initial_time_agrees_with_the_reference(pin, start):
-    rate = max(pin.natural_frequency, abs(pin.disc_speed))
-    times = np.linspace(-7.0, -7.0 + 40.0 / rate, 97)
-    plain = simulate(pin, start, times, tolerance=1e-11)
-    found = simulate(pin, start, times, compiled=True)
-    scale = max(np.hypot(*start[:2]), abs(pin.offset)) * np.array([1.0, 1.0, rate, rate])
-    assert np.max(np.abs(found.states - plain.states) / scale) < 2e-8
-    assert [phase.kind for phase in found.phases] == [phase.kind for phase in plain.phases]
-    assert (found.phases[0].start, found.phases[-1].end) == (times[0], times[-1])
-    np.testing.assert_array_equal(found.states[0], start)
+        assert (mine.start, mine.end) == pytest.approx((other.start, other.end), abs=MOST_TOLERANCES * 1e-9)
+        np.testing.assert_allclose(mine.initial_state, other.initial_state, atol=MOST_TOLERANCES * 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -133,18 +109,6 @@ def test_single_run_and_ensemble_take_the_same_steps(system, start):
     assert np.max(np.abs(found.at_end - alone.states[0])) < 1e-8
 
 
-def test_error_at_all_times_falls_with_the_tolerance():
-    times = np.linspace(0.0, 60.0, 200)
-    exact = simulate(FIG5, SECOND, times, tolerance=1e-13).states
-    tolerances = np.array([1e-5, 1e-7, 1e-9])
-    errors = [
-        np.max(np.abs(simulate(FIG5, SECOND, times, tolerance=tolerance, compiled=True).states - exact))
-        for tolerance in tolerances
-    ]
-    # Each step errs by the tolerance, and the number of steps is of order tolerance^(−1/8), so the slope is 7/8.
-    assert np.polyfit(np.log(tolerances), np.log(errors), 1)[0] == pytest.approx(7.0 / 8.0, abs=0.25), errors
-
-
 def test_run_with_a_single_time_has_its_first_phase():
     stuck = simulate(HARD, stuck_state(HARD, -0.02, 0.0), [3.0], compiled=True)
     assert [(phase.kind, phase.start, phase.end) for phase in stuck.phases] == [("stick", 3.0, 3.0)]
@@ -157,81 +121,18 @@ def test_failed_run_reports_its_time(monkeypatch):
         simulate(FIG5, SECOND, [0.0, 50.0], compiled=True)
 
 
-CREEPING = replace(FIG5, offset=0.0, damping=2.0, friction_force=0.1, disc_speed=0.5)
-"""A pin whose slip decays like exp(−t/2) without end, by the smaller root of λ² − 2λ + 3/4 = 0."""
+LIGHT = DiscOnDisc(
+    mass=1e-6, polar_inertia=0.02, stiffness=1.0, damping=1e6, friction_force=0.1, disc_speed=0.5,
+    contact_radius=1e3, shaft_damping=0.0, shaft_speed=0.0,
+)  # fmt: skip
 
 
-def as_disc(pin, points):
-    """Return a disc without relative spin."""
-    return DiscOnDisc(
-        mass=pin.mass, stiffness=pin.stiffness, damping=pin.damping, friction_force=pin.friction_force,
-        disc_speed=pin.disc_speed, offset=pin.offset, polar_inertia=0.02, contact_radius=0.2, shaft_damping=0.0,
-        shaft_speed=0.0, contact_points=points,
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("points", ["pin", None, 6], ids=["pin", "ring", "six points"])
-def test_slip_that_decays_without_end_is_followed_to_any_time(points):
-    system, start = CREEPING, [0.5, 0.0, 0.0, 0.0]
-    if points != "pin":
-        system, start = as_disc(CREEPING, points), [0.5, 0.0, 0.0, 0.0, 0.0, 0.5]
-    early = simulate(system, start, [0.0, 5.0, 10.0], compiled=True)
-    assert early.states == pytest.approx(simulate(system, start, [0.0, 5.0, 10.0]).states, abs=1e-9)
-    late = simulate(system, start, [0.0, 20.0, 24.0, 28.0, 32.0, 1000.0], compiled=True)
-    assert [phase.kind for phase in late.phases] == ["slip"]
-    assert late.solution.steps < 5000
-    # s ~ exp(−t/2) to leading order; the next order is s, and rounding of x causes 1e-17/s.
-    assert np.diff(np.log(late.slip_speed[1:5])) == pytest.approx(-2.0, rel=1e-4)
-    assert late.radius[-1] == pytest.approx(sticking_radius(CREEPING), rel=1e-9)
-
-
-def straight_swing(share, times):
-    """Return position and velocity of a free pin with k = 1 from rest at 1; each half swing loses 2μN/C."""
-    half = np.floor(times / np.pi)
-    side = 1.0 - 2.0 * (half % 2.0)
-    swing = 1.0 - (2.0 * half + 1.0) * share
-    phase = times - np.pi * half
-    return side * (share + swing * np.cos(phase)), -side * swing * np.sin(phase)
-
-
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-11])
-@pytest.mark.parametrize(
-    ("points", "number"), [("pin", 25), (None, 5), (6, 1)], ids=["pin", "ring", "six points"]
-)
-def test_oscillation_on_a_line_agrees_with_its_closed_form(points, number, tolerance):
-    rng = np.random.default_rng(35)
-    errors = []
-    for share, angle in zip(
-        10.0 ** rng.uniform(-3.0, -1.5, number), rng.uniform(0.0, 6.28, number), strict=True
-    ):
-        along = np.array([np.cos(angle), np.sin(angle)])
-        times = np.linspace(0.0, min(200.0, np.pi * (0.5 / share - 0.5)), 50)  # until it sticks
-        system = PinOnDisc(
-            mass=1.0, stiffness=1.0, damping=0.0, friction_force=share, disc_speed=0.0, offset=0.0
-        )
-        system = system if points == "pin" else as_disc(system, points)
-        start = np.zeros(system.state_size)
-        start[:2] = along
-        states = simulate(system, start, times, tolerance=tolerance, compiled=True).states
-        x, v = straight_swing(share, times)
-        at = system.state_size // 2
-        errors += [states[:, :2] - np.outer(x, along), states[:, at : at + 2] - np.outer(v, along)]
-    assert np.max(np.abs(errors)) < 26.0 * tolerance
-
-
-LIGHT = replace(as_disc(CREEPING, None), mass=1e-6, contact_radius=1e3, damping=1e6)
-
-
-def test_requested_time_costs_at_most_the_step_that_contains_it():
-    """Starting again with a first step would take about 600 evaluations."""
+def test_light_disc_with_a_strong_damper_moves_by_the_balance_of_forces_at_any_requested_time():
     times = np.linspace(0.0, 50.0, 1001)
     found = simulate(LIGHT, [0.5, 0.0, 0.0, 0.0, 0.0, 0.5], times, compiled=True)
-    assert found.solution.evaluations - 12 * found.solution.steps < 20 * len(times)
-
-
-def test_light_disc_with_a_strong_damper_moves_by_the_balance_of_forces():
-    found = simulate(LIGHT, [0.5, 0.0, 0.0, 0.0, 0.0, 0.5], [0.0, 50.0], compiled=True)
     assert found.solution.steps < 5000
+    # Starting again with a first step after each requested time would take about 600 evaluations.
+    assert found.solution.evaluations - 12 * found.solution.steps < 20 * len(times)
     # β·v = −C·z + μN·i·z/|z| to first order in C/β and μN/β, because the slip is that of the master disc.
     z = 0.5 * np.exp(-50e-6) * np.exp(1j * 0.1 / 0.5 * 50e-6)
     assert complex(*found.at_end[:2]) == pytest.approx(z, abs=1e-9)
@@ -239,7 +140,7 @@ def test_light_disc_with_a_strong_damper_moves_by_the_balance_of_forces():
 
 def test_random_pins_with_parameters_over_four_decades_take_a_bounded_number_of_steps():
     rng = np.random.default_rng(13)
-    for _ in range(60):
+    for _ in range(30):
         m, stiffness, damping, friction, speed, offset, size = 10.0 ** rng.uniform(-2.0, 2.0, 7)
         pin = PinOnDisc(
             mass=m, stiffness=stiffness, damping=damping, friction_force=friction,
@@ -249,18 +150,6 @@ def test_random_pins_with_parameters_over_four_decades_take_a_bounded_number_of_
         start = size * rng.normal(size=4) * np.array([1.0, 1.0, k, k])
         found = simulate(pin, start, [0.0, 50.0 * 2.0 * np.pi / k], compiled=True)
         assert found.solution.steps < 400_000
-
-
-def test_states_between_steps_of_a_strongly_damped_pin_are_as_accurate_as_at_its_end():
-    pin = PinOnDisc(
-        mass=1.0, stiffness=1.0, damping=8.3458546, friction_force=0.00348404708, disc_speed=3.83354141,
-        offset=2.108728,
-    )  # fmt: skip
-    start, times = (0.01498423, -0.0328726, 0.04863351, -0.1851470), np.linspace(0.0, 27.656, 1001)
-    found = simulate(pin, start, times, compiled=True)
-    for i in (90, 350, 513, 577, 800):
-        end = simulate(pin, start, times[[0, i]], tolerance=1e-12).at_end
-        assert found.states[i] == pytest.approx(end, abs=2e-9)
 
 
 def test_creeping_ring_at_the_tightest_tolerance_comes_to_rest():
@@ -299,12 +188,6 @@ def test_disc_on_points_uses_the_plain_reference_only_until_it_slips(monkeypatch
     assert sum(by_reference) < 0.4 * sum(slips)
     assert len(parts) <= len(found.stick_phases) + 1
     assert np.max(np.abs(found.states - tight.states)) < 1e-8  # of 4 m and 3.5 m/s
-
-
-def test_contact_law_of_the_parameters_is_accepted():
-    times, start = [0.0, 3.0], stuck_state(FIG9, 0.1, 0.0)
-    named = simulate(FIG9, start, times, contact=Ring(FIG9.contact_radius), compiled=True)
-    np.testing.assert_array_equal(named.states, simulate(FIG9, start, times, compiled=True).states)
 
 
 @pytest.mark.parametrize("hardening", [0.0, 1.0])

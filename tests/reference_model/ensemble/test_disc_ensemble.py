@@ -31,22 +31,27 @@ def starts_of(n, seed=0):
     return starts
 
 
-def test_early_end_at_the_equilibrium_of_fig_8_has_its_radius_and_power():
-    starts = starts_of(10)
-    early = simulate_ensemble(FIG8, starts, duration=3000.0)
-    full = simulate_ensemble(FIG8, starts, duration=3000.0, early_end=False)
+@pytest.mark.parametrize(("points", "away"), [(None, 1e-7), (6, 0.05)])
+def test_early_end_at_the_equilibrium_of_fig_8_has_its_radius_and_power(points, away):
+    starts, disc = starts_of(10), replace(FIG8, contact_points=points)
+    early, full = (
+        simulate_ensemble(disc, starts, duration=3000.0, early_end=early) for early in (True, False)
+    )
     point = self_centred_equilibria(FIG8)[0]
     assert np.all(early.end == EndState.SELF_CENTRED)
     assert np.all(full.end == EndState.SELF_CENTRED)
-    assert np.all(early.time < 0.2 * full.time)
-    assert np.allclose(full.states[:, :2], (point.x, point.y), atol=1e-7)
-    assert np.allclose(early.largest_radius, math.hypot(point.x, point.y))
-    torque = FIG8.shaft_damping * (FIG8.shaft_speed - point.spin)
-    # The master disc supplies the power of the friction force and of the moment.
-    force = FIG8.stiffness * complex(point.x - FIG8.offset, point.y)
-    drive = (force.conjugate() * -1j * FIG8.disc_speed * complex(point.x, point.y)).real
-    power = -drive - torque * (FIG8.disc_speed - point.spin)
-    assert early.slip_power == pytest.approx(power, rel=1e-9)
+    assert np.mean(early.time) < 0.5 * 3000.0
+    # Friction of points oscillates six times per turn by a few per cent.
+    assert np.hypot(full.states[:, 0] - point.x, full.states[:, 1] - point.y).max() < away * (
+        point.x if points else 1.0
+    )
+    if points is None:
+        assert np.allclose(early.largest_radius, math.hypot(point.x, point.y))
+        torque = FIG8.shaft_damping * (FIG8.shaft_speed - point.spin)
+        # The master disc supplies the power of the friction force and of the moment.
+        force = FIG8.stiffness * complex(point.x - FIG8.offset, point.y)
+        drive = (force.conjugate() * -1j * FIG8.disc_speed * complex(point.x, point.y)).real
+        assert early.slip_power == pytest.approx(-drive - torque * (FIG8.disc_speed - point.spin), rel=1e-9)
 
 
 def test_motion_from_the_edge_of_a_trapping_region_goes_to_the_equilibrium():
@@ -97,21 +102,15 @@ def test_whirl_without_offset_is_the_circle_of_the_formula():
 
 
 def test_modulated_whirl_of_fig_11_has_the_radii_of_the_reference():
-    found = simulate_ensemble(FIG11, starts_of(6), duration=3000.0)
+    # The last motion stays long at the unstable centre, from 1e-9 m on.
+    through_centre = [0.04795804, 0.0, 0.0, -0.35128644, 0.0, 0.15522885]
+    found = simulate_ensemble(FIG11, [*starts_of(6), through_centre], duration=3000.0)
     # This start avoids the axis, where errors of the integrator determine the further motion.
     near = (0.04, 0.0, 0.0, 0.0, 0.04, 1.39)
-    late = simulate(FIG11, near, np.linspace(0.0, 1000.0, 10001)).radius[6000:]
+    late = simulate(FIG11, near, np.linspace(0.0, 1000.0, 10001), compiled=True).radius[6000:]
     assert np.all(found.end == EndState.MODULATED)
     assert found.least_radius == pytest.approx(late.min(), rel=1e-3)
     assert found.largest_radius == pytest.approx(late.max(), rel=1e-3)
-
-
-def test_motion_that_stays_long_at_an_unstable_centre_does_not_end_there():
-    start = [0.04795804, 0.0, 0.0, -0.35128644, 0.0, 0.15522885]
-    waiting = simulate(FIG11, start, [0.0, 200.0]).at_end
-    assert math.hypot(*waiting[:2]) < 1e-9
-    assert not self_centred_equilibria(FIG11)[0].stable
-    assert simulate_ensemble(FIG11, start, duration=3000.0).end[0] == EndState.MODULATED
 
 
 @pytest.mark.parametrize("points", [None, 6])
@@ -145,17 +144,6 @@ def test_disc_without_friction_that_starts_without_slip_oscillates_and_is_decide
             found = simulate_ensemble(disc, start, duration=300.0, parameters=parameters)
             assert found.end[0] == EndState.SELF_CENTRED
             assert found.largest_radius[0] == pytest.approx(offset, rel=1e-4)
-
-
-def test_disc_on_six_points_ends_near_the_equilibrium_of_the_ring():
-    disc = replace(FIG8, contact_points=6)
-    found = simulate_ensemble(disc, starts_of(12), duration=1500.0)
-    full = simulate_ensemble(disc, starts_of(12), duration=1500.0, early_end=False)
-    point = self_centred_equilibria(FIG8)[0]
-    assert np.all(found.end == EndState.SELF_CENTRED)
-    assert np.mean(found.time) < 0.5 * 1500.0
-    # Friction of points oscillates six times per turn by a few per cent.
-    assert np.all(np.hypot(full.states[:, 0] - point.x, full.states[:, 1] - point.y) < 0.05 * point.x)
 
 
 def ring(inertia, damping, friction, speed, offset, radius, shaft_damping, shaft_speed):

@@ -21,10 +21,8 @@ START = [0.1, 0.0, 0.0, 0.0]
         (FIG5, [START, [0.1, 0.0, np.nan, 0.0]], {}, r"initial_states\[1, 2\] = nan: it must be finite"),
         (FIG5, [START, [0.1]], {}, r"initial_states must contain numbers only"),
         (FIG5, START, {"duration": 0.0}, r"duration = 0 s: it must be > 0"),
-        (FIG5, START, {"duration": np.inf}, r"duration = inf: it must be finite"),
         (FIG5, START, {"tolerance": 1.0}, r"tolerance = 1: it must lie between"),
         (FIG5, START, {"threads": 0}, r"threads = 0: it must be a whole number >= 1"),
-        (FIG5, START, {"threads": 1.5}, r"threads = 1.5: it must be a whole number >= 1"),
         (FIG5, START, {"parameters": {"ofset": [0.1]}}, r"'ofset' cannot vary .* choose from mass, stiffness"),
         (FIG5, START, {"parameters": {"hardening": [0.1]}}, r"'hardening' cannot vary between trajectories"),
         (FIG5, START, {"parameters": {"offset": 0.1}}, r"offset has shape \(\): it must be a list"),
@@ -50,10 +48,7 @@ def test_invalid_ensemble_is_refused(system, states, options, message):
         (replace(FIG9, contact_points=25), {}, "contact_points = 25: compiled runs support up to 24"),
         (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs support only the law of the system's parameters"),
         (FIG5, {"contact": Ring(0.1)}, "a pin has point contact"),
-        (FIG5, {"tolerance": 1.0}, "tolerance = 1: it must lie between"),
         (FIG5, {"times": [0.0, -1.0]}, "times must increase"),
-        (FIG5, {"initial_state": [0.0]}, "initial_state"),
-        ("pin", {}, "it must be a PinOnDisc or a DiscOnDisc"),
     ],
 )  # fmt: skip
 def test_invalid_compiled_run_is_refused(system, options, message):
@@ -62,14 +57,10 @@ def test_invalid_compiled_run_is_refused(system, options, message):
         simulate(system, compiled=True, **arguments)
 
 
-def test_one_start_is_used_for_all_parameters():
+def test_one_start_is_used_for_all_parameters_and_results_are_immutable():
     loads = np.array([0.09, 0.5])
     found = simulate_ensemble(FIG5, START, duration=400.0, parameters={"friction_force": loads})
     assert found.end.tolist() == [EndState.SELF_CENTRED, EndState.STUCK]
     assert found.states.shape == (2, 4)
-
-
-def test_results_are_immutable():
-    found = simulate_ensemble(FIG5, START, duration=10.0)
     with pytest.raises(ValueError, match="read-only"):
         found.end[0] = 3

@@ -22,15 +22,13 @@ from reference_model import (
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.recurrence import converged
-from reference_model.ensemble.pin import slip as pin_slip
 from reference_model.ensemble.pin.end_states import (
     depth,
     equilibrium_region,
     orbit_attracts,
     return_derivative,
 )
-from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.stick import release_delay, slip_from_rest
+from reference_model.formulas.pin import equilibrium_position
 
 ACCURACY = 1e-4
 """Relative distance from a periodic motion that may remain."""
@@ -47,7 +45,6 @@ def starts(n, reach, seed=0):
 @pytest.mark.parametrize(
     ("pin", "reach", "duration", "expected"),
     [
-        (FIG5, 0.4, 400.0, {"SELF_CENTRED", "WHIRL"}),
         (replace(FIG5, disc_speed=-1.5, offset=-0.1), 0.4, 400.0, {"SELF_CENTRED", "WHIRL"}),
         (replace(FIG5, offset=0.0), 0.4, 400.0, {"STUCK", "WHIRL"}),
         (replace(FIG5, disc_speed=0.7), 1.0, 400.0, {"SELF_CENTRED"}),
@@ -59,7 +56,7 @@ def starts(n, reach, seed=0):
         (replace(FIG5, damping=0.0), 1.0, 100.0, {"UNDECIDED"}),
     ],
     ids=[
-        "Fig. 5", "mirrored", "centred", "slow disc", "sticks", "creeps", "stick and slip", "no friction",
+        "Fig. 5 mirrored", "centred", "slow disc", "sticks", "creeps", "stick and slip", "no friction",
         "no friction, no damping", "no damping",
     ],
 )  # fmt: skip
@@ -77,9 +74,8 @@ def test_early_end_states_agree_with_runs_of_full_length(pin, reach, duration, e
         np.testing.assert_array_equal(early.end[decided], other.end[decided])
         assert decided.mean() > 0.95 or expected == {"UNDECIDED"}
     if expected != {"UNDECIDED"}:
-        assert early.steps.sum() < 0.7 * full.steps.sum() or expected == {
-            "STUCK"
-        }  # a stuck pin takes no steps
+        # A stuck pin takes no steps.
+        assert early.steps.sum() < 0.7 * full.steps.sum() or expected == {"STUCK"}
     assert np.all(full.time == duration)
     np.testing.assert_array_equal(np.isnan(early.slip_power), early.end == EndState.UNDECIDED)
 
@@ -94,13 +90,10 @@ def test_radii_and_power_of_the_whirl_agree_with_shooting():
     assert found.largest_radius[0] == pytest.approx(radius.max(), abs=2e-6)
     slip = orbit.trajectory.slip_speed[:-1]
     assert found.slip_power[0] == pytest.approx(FIG5.friction_force * slip.mean(), rel=1e-7)
-    without_known_ends = simulate_ensemble(
-        FIG5, [0.5, 0.0, 0.3, 0.3], duration=400.0, parameters={"offset": [FIG5.offset]}
-    )
+    known = {"offset": [FIG5.offset]}  # without neighbourhoods of end states, which are those of one system
+    other = simulate_ensemble(FIG5, [0.5, 0.0, 0.3, 0.3], duration=400.0, parameters=known)
     for name in ("least_radius", "largest_radius", "slip_power"):
-        assert getattr(without_known_ends, name)[0] == pytest.approx(
-            getattr(found, name)[0], rel=2.0 * ACCURACY
-        )
+        assert getattr(other, name)[0] == pytest.approx(getattr(found, name)[0], rel=2.0 * ACCURACY)
 
 
 def test_radii_of_periodic_motions_agree_with_the_reference():
@@ -122,35 +115,20 @@ def test_radii_of_periodic_motions_agree_with_the_reference():
         assert found.largest_radius[i] == pytest.approx(radius.max(), rel=ACCURACY)
 
 
-def test_radii_and_power_of_rest_and_equilibrium_have_their_closed_forms():
-    (equilibrium,) = self_centred_equilibria(FIG5)
-    found = simulate_ensemble(FIG5, [0.1, 0.0, 0.0, 0.0], duration=400.0)
-    radius = np.hypot(equilibrium.x, equilibrium.y)
-    assert found.end[0] == EndState.SELF_CENTRED
-    assert found.least_radius[0] == pytest.approx(radius, rel=1e-12)
-    assert found.slip_power[0] == pytest.approx(FIG5.friction_force * FIG5.disc_speed * radius, rel=1e-12)
-    stuck = simulate_ensemble(STICKS, [0.05, 0.0, 0.0, 0.03], duration=400.0)
-    assert stuck.end[0] == EndState.STUCK
-    assert stuck.least_radius[0] == stuck.largest_radius[0] == pytest.approx(0.05, rel=1e-12)
-    assert stuck.slip_power[0] == 0.0
-
-
-def test_radii_and_power_of_a_stick_slip_cycle_agree_with_the_reference():
+def test_power_of_a_stick_slip_cycle_agrees_with_the_reference():
     found = simulate_ensemble(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], duration=400.0)
     assert found.end[0] == EndState.STICK_SLIP
     times = np.linspace(0.0, 20.0, 10_001)
     trajectory = simulate(STICK_SLIP, found.states[0], times, tolerance=1e-10)
     first, last = (phase.end for phase in trajectory.stick_phases[-3:-1])
     cycle = (times >= first) & (times <= last)
-    assert found.least_radius[0] == pytest.approx(trajectory.radius[cycle].min(), rel=2.0 * ACCURACY)
-    assert found.largest_radius[0] == pytest.approx(trajectory.radius[cycle].max(), rel=2.0 * ACCURACY)
     power = STICK_SLIP.friction_force * trapezoid(trajectory.slip_speed[cycle], times[cycle]) / (last - first)
     assert found.slip_power[0] == pytest.approx(power, rel=1e-3)
 
 
 def test_motions_and_end_states_do_not_depend_on_units():
     length, time, mass = 2.0**20, 2.0**-9, 2.0**-5  # without rounding
-    states = starts(100, 0.4)
+    states = starts(50, 0.4)
     scaled = in_units(FIG5, mass, length, time)
     size = np.array([length, length, length / time, length / time])
     for early_end in (False, True):
@@ -162,48 +140,50 @@ def test_motions_and_end_states_do_not_depend_on_units():
         np.testing.assert_allclose(other.slip_power, one.slip_power * mass * length**2 / time**3, rtol=1e-7)
 
 
-def beyond(pin, share):
-    """Return a stuck start at a ``share`` of the sticking radius."""
-    return stuck_state(pin, share * sticking_radius(pin), 0.0)
-
-
 # The first pin has no offset. It slips more and more slowly and never rests. The others slip briefly in each turn.
 OVERDAMPED = replace(FIG5, stiffness=15.0, damping=9.0, friction_force=12.0, disc_speed=1.0, offset=0.0)
 WEAKLY_DAMPED = replace(FIG5, damping=0.128, friction_force=0.2424, disc_speed=-0.26, offset=-0.2275)
 STRONGLY_DAMPED = replace(FIG5, damping=4.5, friction_force=0.19, disc_speed=0.41, offset=-0.16)
+CENTRED = replace(FIG5, offset=0.0)
+
+
+def beyond(pin, share, slip=(0.0, 0.0)):
+    """Return a start at a ``share`` of the sticking radius."""
+    return stuck_state(pin, share * sticking_radius(pin), 0.0) + np.array([0.0, 0.0, *slip])
 
 
 @pytest.mark.parametrize(
-    ("pin", "start", "duration", "farthest"),
+    ("pin", "start", "duration", "end", "radius"),
     [
-        (OVERDAMPED, [0.9, -1.7, 8.0, -60.0], 60.0, 1.0 + 1e-9),
-        (WEAKLY_DAMPED, beyond(WEAKLY_DAMPED, 1.001), 400.0, 1.0005),
-        (STRONGLY_DAMPED, beyond(STRONGLY_DAMPED, 1.08), 150.0, 1.08),
+        (FIG5, [0.1, 0.0, 0.0, 0.0], 400.0, "SELF_CENTRED", np.hypot(*equilibrium_position(FIG5))),
+        (STICKS, [0.05, 0.0, 0.0, 0.03], 400.0, "STUCK", 0.05),
+        (OVERDAMPED, [0.9, -1.7, 8.0, -60.0], 60.0, "STUCK", sticking_radius(OVERDAMPED)),
+        (WEAKLY_DAMPED, beyond(WEAKLY_DAMPED, 1.001), 400.0, "STUCK", sticking_radius(WEAKLY_DAMPED)),
+        (STRONGLY_DAMPED, beyond(STRONGLY_DAMPED, 1.08), 150.0, "STUCK", sticking_radius(STRONGLY_DAMPED)),
+        # Slip leads outward to the whirl, because ω > k.
+        *(
+            (CENTRED, beyond(CENTRED, 1.03, slip), 600.0, "WHIRL", 0.9)
+            for slip in ((1e-9, 0.0), (0.0, -1e-9))
+        ),
     ],
 )
-def test_pin_that_creeps_forever_is_stuck_at_its_final_radius(pin, start, duration, farthest):
+def test_end_state_is_found_early_with_the_radius_and_power_of_its_closed_form(
+    pin, start, duration, end, radius
+):
     early, full = (
         simulate_ensemble(pin, start, duration=duration, early_end=early) for early in (True, False)
     )
-    assert early.end[0] == full.end[0] == EndState.STUCK
-    assert early.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
+    assert early.end[0] == full.end[0] == EndState[end]
     assert early.time[0] < full.time[0] == duration
-    end = simulate(pin, start, [0.0, duration], tolerance=1e-11).at_end
-    assert full.states[0] == pytest.approx(end, abs=1e-9)
-    assert 1.0 - 1e-9 < np.hypot(*end[:2]) / sticking_radius(pin) < farthest
+    accuracy = ACCURACY if end == "WHIRL" else 1e-12
+    assert (early.least_radius[0], early.largest_radius[0]) == pytest.approx((radius, radius), rel=accuracy)
+    slip = {"STUCK": 0.0, "SELF_CENTRED": pin.disc_speed * radius, "WHIRL": (pin.disc_speed - 1.0) * radius}[
+        end
+    ]
+    assert early.slip_power[0] == pytest.approx(pin.friction_force * slip, rel=2.0 * accuracy)
 
 
-@pytest.mark.parametrize("slip", [(1e-9, 0.0), (-1e-9, 0.0), (0.0, 1e-9), (0.0, -1e-9)])
-def test_slip_that_leads_outward_without_offset_ends_on_the_whirl(slip):
-    pin = replace(FIG5, offset=0.0)  # ω > k
-    start = stuck_state(pin, 1.03 * sticking_radius(pin), 0.0)
-    start[2:] += slip
-    found = simulate_ensemble(pin, start, duration=600.0)
-    assert found.end[0] == EndState.WHIRL
-    assert found.largest_radius[0] == pytest.approx(pin.friction_force / pin.damping, rel=ACCURACY)
-
-
-@pytest.mark.parametrize(("offset", "share"), [(0.0, 1.04), (0.24, 3.0), (0.24, 3.5)])
+@pytest.mark.parametrize(("offset", "share"), [(0.0, 1.04), (0.24, 3.5)])
 def test_fast_slip_inward_ends_where_the_reference_rests(offset, share):
     pin = replace(FIG5, damping=0.03, friction_force=0.25, disc_speed=0.3, offset=offset)
     start = stuck_state(pin, share * sticking_radius(pin), 0.0)
@@ -229,24 +209,7 @@ def law_of(pin):
     return laws.PinLaw(pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0)
 
 
-def test_release_and_first_slip_agree_with_the_plain_reference():
-    motion, law = SlipMotion.of(FIG5), law_of(FIG5)
-    work = np.zeros((6, pin_slip.MOST_TERMS + 2), dtype=complex)
-    for angle in np.linspace(0.0, 6.0, 9):
-        z = 0.05 * np.exp(1j * angle)
-        delay = release_delay(motion, z)
-        assert laws.release_delay(z, law) == pytest.approx(delay, rel=1e-12)
-        z *= np.exp(1j * FIG5.disc_speed * delay)
-        place, w, duration, distance = pin_slip.begin_slip.py_func(z, law, 1e-13, 100.0, work)
-        exact, exact_slip = slip_from_rest(motion, z).at(np.array([duration]))
-        assert abs(place - exact[0]) < 1e-13
-        assert abs(w - exact_slip[0]) < 1e-12
-        assert distance == pytest.approx(abs(w) * duration / 3.0, rel=0.1)  # slip is of order t²
-
-
-@pytest.mark.parametrize(
-    "pin", [FIG5, replace(FIG5, disc_speed=-0.4, offset=-0.2), replace(FIG5, damping=2.5)]
-)
+@pytest.mark.parametrize("pin", [replace(FIG5, disc_speed=-0.4, offset=-0.2), replace(FIG5, damping=2.5)])
 def test_lyapunov_form_falls_along_all_motions_within_its_level(pin):
     law = law_of(pin)
     well = equilibrium_region(law)
@@ -256,7 +219,7 @@ def test_lyapunov_form_falls_along_all_motions_within_its_level(pin):
     assert well.level > 0.0
     turn = 1j * pin.disc_speed
     rng = np.random.default_rng(4)
-    for _ in range(300):
+    for _ in range(100):
         z, v = well.place + complex(*rng.normal(size=2)), complex(*rng.normal(size=2))
         share = np.sqrt(well.level / depth(z, v - turn * z, law, *about)) * rng.uniform(0.01, 1.0)
         z, v = well.place + share * (z - well.place), share * v
@@ -273,6 +236,7 @@ def test_distances_that_do_not_shrink_do_not_count_as_converged():
     assert not converged(1e-5, 1e-5, 4e-5, 1.0)
     assert not converged(1e-5, 4e-5, 1e-5, 1.0)
     assert converged(1e-8, 3e-8, 2e-8, 1.0)
+    assert not converged(3e-8, 2e-8, 1e-8, 1.0)  # near a saddle
 
 
 def test_starts_next_to_the_basin_boundary_end_on_their_own_side():

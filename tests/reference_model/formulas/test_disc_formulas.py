@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from disc_equations import LARGE, eq_23, mirrored
 from plain_engines import in_units
-from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from compare.claims.parameters import FIG8, FIG11
@@ -20,64 +19,23 @@ from reference_model.steady.steady_states import self_centred_equilibria, whirls
 ROUNDING = 1e-13
 
 
-def test_error_of_the_expansion_22_is_its_first_neglected_term():
-    slip, place = complex(0.3, -0.7), 1.1
-    errors = []
-    for rim_speed in (0.01, 0.005):
-        of_point = slip - 1j * rim_speed * np.exp(1j * place)  # (21)
-        exact = math.hypot(abs(slip), rim_speed) / abs(of_point)
-        errors.append(
-            [
-                form(slip, rim_speed, place) - exact
-                for form in (formulas.inverse_slip_speed, formulas.inverse_slip_speed_as_printed)
-            ]
-        )
-    three, two = np.log2(np.divide(*errors))
-    assert three == pytest.approx(3.0, abs=0.05)
-    assert two == pytest.approx(2.0, abs=0.05)
-
-
-def averaged(expansion, slip, rim_speed):
-    """Return force/μN and moment/(μN·R) by (20), (21) and an expansion of ν̄_r/|ν_r|, by quadrature."""
-    speed = math.hypot(abs(slip), rim_speed)
-
-    def of_point(place):
-        velocity = slip - 1j * rim_speed * np.exp(1j * place)
-        along_rim = velocity.real * math.sin(place) - velocity.imag * math.cos(place)
-        return (
-            np.array([-velocity.real, -velocity.imag, along_rim]) * expansion(slip, rim_speed, place) / speed
-        )
-
-    return [
-        quad(lambda place, i=i: of_point(place)[i], 0.0, 2.0 * np.pi)[0] / (2.0 * np.pi) for i in range(3)
-    ]
-
-
-@pytest.mark.parametrize(
-    ("slip", "rim_speed"), [(1.0 + 0j, 1.0), (0.3 - 0.7j, -2.0), (2j, 0.1), (1e-6 + 0j, 1.0), (0j, -1.0)]
-)
-def test_23_is_the_average_of_three_terms_of_22_and_not_of_the_two_printed_terms(slip, rim_speed):
+@pytest.mark.parametrize(("slip", "rim_speed"), [(0.3 - 0.7j, -2.0), (2j, 0.1), (1e-6 + 0j, 1.0), (0j, -1.0)])
+def test_23_is_the_average_of_three_terms_of_22(slip, rim_speed):
+    """The errata show that it is not that of the two printed terms."""
     unit = replace(FIG8, friction_force=1.0, contact_radius=1.0)
-    expected = eq_23(unit)(slip.real, slip.imag, rim_speed, 0.0)
-    assert averaged(formulas.inverse_slip_speed, slip, rim_speed) == pytest.approx(expected, abs=1e-14)
-    both = 0.75 * abs(slip * rim_speed) ** 2 / (abs(slip) ** 2 + rim_speed**2) ** 2
-    two = averaged(formulas.inverse_slip_speed_as_printed, slip, rim_speed)
-    # The term with Φ is missing.
-    missing = both / math.hypot(abs(slip), rim_speed) * np.array([-slip.real, -slip.imag, rim_speed])
-    assert np.add(two, missing) == pytest.approx(expected, abs=1e-14)
+    place = 2.0 * np.pi * np.arange(16) / 16  # averages are exact: cubic at most in sine and cosine
+    velocity = slip - 1j * rim_speed * np.exp(1j * place)  # (21)
+    along_rim = velocity.real * np.sin(place) - velocity.imag * np.cos(place)
+    expansion = np.array([formulas.inverse_slip_speed(slip, rim_speed, at) for at in place.tolist()])
+    inverse = expansion / math.hypot(abs(slip), rim_speed)
+    found = np.mean([-velocity.real * inverse, -velocity.imag * inverse, along_rim * inverse], axis=1)
+    assert found == pytest.approx(eq_23(unit)(slip.real, slip.imag, rim_speed, 0.0), abs=1e-14)
 
 
-DISCS = [
-    mirrored(FIG8),
-    replace(FIG8, offset=-0.1),
-    replace(FIG8, shaft_speed=3.0),
-    LARGE,
-    mirrored(LARGE),
-]
-
-
-@pytest.mark.parametrize("share", [1e-3, 0.2, 0.7, 0.98])
-@pytest.mark.parametrize("disc", DISCS)
+@pytest.mark.parametrize("share", [1e-3, 0.7, 0.98])
+@pytest.mark.parametrize(
+    "disc", [replace(FIG8, offset=-0.1), replace(FIG8, shaft_speed=3.0), mirrored(LARGE)]
+)
 def test_positions_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc, share):
     disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
     found = formulas.positions_by_26(disc)
@@ -106,7 +64,7 @@ def test_26_gives_the_equilibrium_of_a_pin_if_shaft_and_master_disc_turn_alike()
 
 @pytest.mark.parametrize("law", [Ring, ThreeTermRing])
 @pytest.mark.parametrize("alpha", [0.05, 0.7, 0.9, 1.5])
-@pytest.mark.parametrize("disc", [FIG11, mirrored(FIG11), replace(FIG11, shaft_speed=1.75, damping=0.03)])
+@pytest.mark.parametrize("disc", [mirrored(FIG11), replace(FIG11, shaft_speed=1.75, damping=0.03)])
 def test_whirl_at_a_ratio_is_one_of_the_whirls_at_its_load(disc, alpha, law):
     contact = law(disc.contact_radius)
     load, radius, spin = formulas.whirl_at(disc, alpha, contact)
@@ -145,33 +103,32 @@ def test_held_force_lies_on_the_limit_surface(torque_share):
     assert replace(held, friction_force=0.4) == formulas.pin_of(disc)
 
 
-REFUSED = [
-    (formulas.positions_by_26, {"stiffness": 0.0}, "stiffness = 0"),
-    (formulas.positions_by_26, {"disc_speed": 0.0}, "disc_speed = 0"),
-    (formulas.positions_by_26, {"shaft_damping": 0.0}, "shaft_damping = 0"),
-    (formulas.positions_by_26, {"offset": 0.0}, "offset = 0"),
-    (lambda disc: formulas.polar_angle(disc, 0.2, 0.0), {}, r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"),
-    (formulas.held_pin, {"friction_force": 0.02}, r"holds only 0\.0024 N m of the shaft's 0\.003 N m"),
-    (formulas.held_pin, {"contact_points": 6}, "contact_points = 6"),
-]
-WITHOUT_A_WHIRL = [
-    ({}, 0.0, "alpha = 0 rad"),
-    ({}, 1.6, r"alpha = 1\.6 rad"),
-    ({"shaft_speed": 1.5}, 1.0, "disc_speed - shaft_speed = 0 rad/s"),
-    ({"shaft_damping": 0.0}, 1.0, "shaft_damping = 0"),
-    ({"disc_speed": 0.7}, 1.0, r"disc_speed = 0\.7 rad/s"),
-    ({"damping": 0.0}, 1.0, "damping = 0"),
-    ({"contact_points": 6}, 1.0, "contact_points = 6"),
-]
+def at_distance(distance):
+    return lambda disc: formulas.polar_angle(disc, distance, 0.0)
 
 
-@pytest.mark.parametrize(("formula", "changes", "message"), REFUSED)
-def test_disc_outside_the_domain_of_a_formula_is_refused(formula, changes, message):
+def at_ratio(alpha):
+    return lambda disc: formulas.whirl_at(disc, alpha)
+
+
+@pytest.mark.parametrize(
+    ("formula", "disc", "changes", "message"),
+    [
+        *((formulas.positions_by_26, FIG8, {name: 0.0}, f"{name} = 0") for name in (
+            "stiffness", "disc_speed", "shaft_damping", "offset",
+        )),
+        (at_distance(0.2), FIG8, {}, r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"),
+        (formulas.held_pin, FIG8, {"friction_force": 0.02}, r"holds only 0\.0024 N m of the shaft's 0\.003 N m"),
+        (formulas.held_pin, FIG8, {"contact_points": 6}, "contact_points = 6"),
+        (at_ratio(0.0), FIG11, {}, "alpha = 0 rad"),
+        (at_ratio(1.6), FIG11, {}, r"alpha = 1\.6 rad"),
+        (at_ratio(1.0), FIG11, {"shaft_speed": 1.5}, "disc_speed - shaft_speed = 0 rad/s"),
+        (at_ratio(1.0), FIG11, {"shaft_damping": 0.0}, "shaft_damping = 0"),
+        (at_ratio(1.0), FIG11, {"disc_speed": 0.7}, r"disc_speed = 0\.7 rad/s"),
+        (at_ratio(1.0), FIG11, {"damping": 0.0}, "damping = 0"),
+        (at_ratio(1.0), FIG11, {"contact_points": 6}, "contact_points = 6"),
+    ],
+)  # fmt: skip
+def test_disc_outside_the_domain_of_a_formula_is_refused(formula, disc, changes, message):
     with pytest.raises(ValueError, match=message):
-        formula(replace(FIG8, **changes))
-
-
-@pytest.mark.parametrize(("changes", "alpha", "message"), WITHOUT_A_WHIRL)
-def test_ratio_without_a_whirl_is_refused(changes, alpha, message):
-    with pytest.raises(ValueError, match=message):
-        formulas.whirl_at(replace(FIG11, **changes), alpha)
+        formula(replace(disc, **changes))

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, root
+from scipy.optimize import root
 
 from reference_model.formulas import pin as formulas
 from reference_model.systems import PinOnDisc
@@ -69,33 +69,10 @@ def test_holding_force_balances_the_equations_of_motion_of_a_stuck_pin(pin):
     assert formulas.squared_holding_force(pin, 0.4, angle) == pytest.approx(expected, rel=ROUNDING)
 
 
-@pytest.mark.parametrize("pin", STUCK)
-@pytest.mark.parametrize("excess", [1.001, 1.02, 1.3])
-def test_release_is_at_the_first_root_of_the_holding_force_minus_friction(pin, excess):
-    radius = excess * formulas.sticking_radius(pin)
-
-    def spare_at(time, start):
-        return pin.friction_force - abs(force_on_a_stuck_pin(pin, radius, start + pin.disc_speed * time))
-
-    times = np.linspace(0.0, 2.0 * np.pi / abs(pin.disc_speed), 4001)
-    for start in np.linspace(-9.0, 9.0, 13):
-        first = int(np.argmax(spare_at(times, start) < 0.0))
-        expected = (
-            brentq(spare_at, times[first - 1], times[first], args=(start,), xtol=1e-15) if first else 0.0
-        )
-        # The force passes its limit at an angle: its rounding, divided by its slope, is the error in time.
-        found = formulas.release_time(pin, radius, start)
-        assert found == pytest.approx(expected, abs=1e-11), f"start at {start} rad"
-        if found > 0.0:
-            turn = formulas.turn_until_release(pin, radius, start)
-            assert turn == pytest.approx(found * abs(pin.disc_speed), rel=1e-15)
-
-
 def test_pin_on_a_disc_at_rest_sticks_permanently_if_friction_exceeds_the_spring_force():
     pin = replace(FIG_4, disc_speed=0.0)  # holds up to 0.12 m from (0.1, 0)
     assert formulas.release_time(pin, 0.2, 0.0) == math.inf
     assert formulas.release_time(pin, 0.2, math.pi) == 0.0
-    assert formulas.release_time(replace(pin, disc_speed=-0.0), 0.2, 0.0) == math.inf
 
 
 @pytest.mark.parametrize("pin", STUCK)
@@ -111,11 +88,13 @@ def test_largest_holding_force_at_the_sticking_radius_is_the_friction_force(pin)
 
 def test_sticking_radius_of_an_undamped_pin_is_infinite_at_its_natural_frequency():
     assert formulas.sticking_radius(replace(FIG_4, damping=0.0, disc_speed=-1.0)) == math.inf
+    with pytest.raises(ValueError, match=r"radius = -0\.1 m"):
+        formulas.turn_until_release(FIG_5, -0.1, 0.0)
 
 
 def pins_below_and_above_resonance():
-    for damping in (0.01, 0.1, 0.5, 1.0, 2.5, 8.0):
-        for disc_speed in (0.0, 0.05, 0.15, 0.3, 0.4, 0.6, 0.8, 0.95, 0.999, 1.001, 1.1, 1.5, 3.0, 20.0):
+    for damping in (0.01, 0.5, 2.5, 8.0):
+        for disc_speed in (0.0, 0.05, 0.15, 0.3, 0.6, 0.8, 0.95, 0.999, 1.001, 1.1, 1.5, 3.0, 20.0):
             yield replace(FIG_4, damping=damping, disc_speed=disc_speed)
 
 
@@ -145,14 +124,9 @@ def test_threshold_of_16_tends_to_minus_a_half_for_weak_damping():
         assert margin == pytest.approx(0.5, abs=damping**2)
 
 
-WHIRLING = [
-    replace(FIG_4, disc_speed=1.1),
-    replace(FIG_4, disc_speed=1.5),
-    replace(FIG_4, disc_speed=2.0),
-    replace(FIG_4, disc_speed=-1.3),
-    replace(HEAVY, disc_speed=1.9),
-]
-
+whirling = pytest.mark.parametrize(
+    "pin", [replace(FIG_4, disc_speed=1.1), replace(FIG_4, disc_speed=-1.3), replace(HEAVY, disc_speed=1.9)]
+)
 
 MEAN, FIRST, SECOND = (int(np.argmax(n == ORDERS)) for n in range(3))
 
@@ -172,7 +146,7 @@ def whirl_with_offset(pin):
     return found.x[: ORDERS.size] + 1j * found.x[ORDERS.size : -1]
 
 
-@pytest.mark.parametrize("pin", WHIRLING)
+@whirling
 def test_first_order_response_is_exact_up_to_the_third_power_of_the_offset(pin):
     offsets = np.array([0.02, 0.01]) * formulas.whirl_radius(pin)
     errors = []
@@ -186,7 +160,7 @@ def test_first_order_response_is_exact_up_to_the_third_power_of_the_offset(pin):
     assert orders == pytest.approx([3.0, 3.0], abs=0.05)
 
 
-@pytest.mark.parametrize("pin", WHIRLING)
+@whirling
 def test_relative_error_of_18_tends_to_the_limit_formula(pin):
     small = replace(pin, offset=1e-4 * formulas.whirl_radius(pin))
     found = complex(*formulas.whirl_shift(small)) / whirl_with_offset(small)[MEAN] - 1.0
@@ -195,7 +169,7 @@ def test_relative_error_of_18_tends_to_the_limit_formula(pin):
     assert found == pytest.approx(limit, abs=1e-6)  # of order (wX0/ρ_c)² with w = ω/(ω − k) <= 11
 
 
-@pytest.mark.parametrize("pin", WHIRLING)
+@whirling
 def test_third_order_of_the_shift_is_exact_in_first_order_of_the_damping(pin):
     """The neglected terms are of relative order d, so they halve with the damping."""
     offset, errors = 2e-3, []
@@ -213,15 +187,8 @@ def test_third_order_of_the_shift_is_exact_in_first_order_of_the_damping(pin):
     assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)
 
 
-WITHOUT_A_WHIRL = (
-    ({"disc_speed": 1.0}, "disc_speed = 1 rad/s.*natural frequency 1 rad/s"),
-    ({"disc_speed": -0.5}, r"disc_speed = -0\.5 rad/s"),
-    ({"damping": 0.0}, "damping = 0"),
-    ({"friction_force": 0.0}, "friction_force = 0"),
-    ({"stiffness": 0.0}, "stiffness = 0"),
-)
 NEED_A_WHIRL = (
-    "whirl_radius", "whirl_frequency", "whirl_shift", "first_order_whirl_shift", "whirl_shift_error_limit",
+    "whirl_frequency", "whirl_shift", "first_order_whirl_shift", "whirl_shift_error_limit",
     "third_order_of_whirl_shift",
 )  # fmt: skip
 NEED_A_RATIO = (
@@ -236,12 +203,10 @@ REFUSED = [
     ("sticking_radius", {"friction_force": 0.05, "offset": -0.1}, r"force = 0\.05 N.* = 0\.1 N \(eq\. 9\)"),
     ("sticking_radius", {"friction_force": 0.1}, r"friction_force = 0\.1 N.* = 0\.1 N \(eq\. 9\)"),
     ("resonant_disc_speed", {"damping": 2.0, "stiffness": 2.0}, r"damping = 2 N s/m.* = 2 N s/m"),
-    *((formula, *case) for formula in NEED_A_WHIRL for case in WITHOUT_A_WHIRL),
-    *(
-        (formula, {"disc_speed": speed}, f"disc_speed = {speed:g} rad/s: ω/")
-        for formula in NEED_A_RATIO
-        for speed in (1.0, -1.0)
-    ),
+    ("whirl_radius", {"disc_speed": 1.0}, "disc_speed = 1 rad/s.*natural frequency 1 rad/s"),
+    *(("whirl_radius", {name: 0.0}, f"{name} = 0") for name in ("damping", "friction_force", "stiffness")),
+    *((formula, {"disc_speed": -0.5}, r"disc_speed = -0\.5 rad/s") for formula in NEED_A_WHIRL),
+    *((formula, {"disc_speed": -1.0}, "disc_speed = -1 rad/s: ω/") for formula in NEED_A_RATIO),
 ]
 
 
@@ -249,8 +214,3 @@ REFUSED = [
 def test_pin_outside_the_domain_of_a_formula_is_refused(formula, changes, message):
     with pytest.raises(ValueError, match=message):
         getattr(formulas, formula)(replace(FIG_5, **changes))
-
-
-def test_negative_radius_is_refused():
-    with pytest.raises(ValueError, match=r"radius = -0\.1 m"):
-        formulas.turn_until_release(FIG_5, -0.1, 0.0)

@@ -31,7 +31,7 @@ def centre(contact):
     return contact.shares @ np.array(contact.arms(0.0))
 
 
-RANDOM = pytest.mark.parametrize("seed", range(30))
+RANDOM = pytest.mark.parametrize("seed", range(20))
 
 
 @RANDOM
@@ -89,11 +89,10 @@ def test_a_foot_that_sticks_to_the_hand_draws_the_other_along_a_tractrix():
     start, way, touched = 0.4, 0.03, 0.004
 
     def error(steps):
-        push = cmath.exp(
-            1j * (math.pi + start)
-        )  # at the angle ``start`` to the line from the hand to the other foot
-        pushing = Pushing(TWO_FEET, HALF, push, ROUGH)
-        _, angle = pushing.pose(HALF - touched * push, HALF + way * push, steps)
+        # At the angle ``start`` to the line from the hand to the other foot.
+        along = cmath.exp(1j * (math.pi + start))
+        pushing = Pushing(TWO_FEET, HALF, along, ROUGH)
+        _, angle = pushing.pose(HALF - touched * along, HALF + way * along, steps)
         return start - angle - 2.0 * math.atan(math.tan(start / 2.0) * math.exp(way / (2.0 * HALF)))
 
     assert error(32) == pytest.approx(0.0, abs=1e-5)
@@ -106,17 +105,18 @@ def test_a_hand_that_moves_away_leaves_the_body():
         assert pushing.pose(0.01 - 0.001j, end) == (0.0, 0.0)
 
 
+def push(normal=1j, friction=0.1):
+    return Pushing(TWO_FEET, 0j, normal, friction)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: Pushing(TWO_FEET, 0j, 0j, 0.1), "normal = 0: it must point into the body"),
-        (lambda: Pushing(TWO_FEET, 0j, 1j * math.inf, 0.1), "normal = .*: it must be finite"),
-        (lambda: Pushing(TWO_FEET, 0j, 1j, -0.1), "friction_coefficient = -0.1: it must be >= 0"),
-        (
-            lambda: Pushing(TWO_FEET, 0j, 1j, 0.1).pose(0.01j, 0.02j),
-            "start = 0.01j: the hand must start outside",
-        ),
-        (lambda: Pushing(TWO_FEET, 0j, 1j, 0.1).pose(0j, 0.02j, 0), "steps = 0"),
+        (lambda: push(normal=0j), "normal = 0: it must point into the body"),
+        (lambda: push(normal=1j * math.inf), "normal = .*: it must be finite"),
+        (lambda: push(friction=-0.1), "friction_coefficient = -0.1: it must be >= 0"),
+        (lambda: push().pose(0.01j, 0.02j), "start = 0.01j: the hand must start outside"),
+        (lambda: push().pose(0j, 0.02j, 0), "steps = 0"),
     ],
 )
 def test_invalid_numbers_are_refused(call, message):

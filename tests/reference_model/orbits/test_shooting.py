@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from disc_equations import assert_same_eigenvalues
 
 from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, last_whirl, self_centred_equilibria, simulate, whirl_orbit, whirls
@@ -24,16 +25,16 @@ def turned(z, angle):
     return z.real, z.imag
 
 
-PINS = [replace(pin, offset=0.0) for pin in (FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2))]
-DISCS = [FIG11, replace(FIG11, friction_force=0.08, disc_speed=-1.5, shaft_speed=-1.25)]
+BACKWARDS = replace(FIG11, friction_force=0.08, disc_speed=-1.5, shaft_speed=-1.25)
 
 
 @pytest.mark.parametrize(
     ("system", "law", "error"),
     [
-        *((pin, None, 1e-9) for pin in PINS),
+        (replace(HEAVY, offset=0.0, disc_speed=-2.2), None, 1e-9),
         # Differences over 3e-4 are less accurate for discs, because the law is steep near U = W.
-        *((disc, law, 1e-8) for disc in DISCS for law in (None, ThreeTermRing(0.12))),
+        (FIG11, None, 1e-8),
+        (BACKWARDS, ThreeTermRing(0.12), 1e-8),
     ],
 )
 def test_whirl_without_offset_agrees_with_its_formula_and_eigenvalues(system, law, error):
@@ -44,14 +45,13 @@ def test_whirl_without_offset_agrees_with_its_formula_and_eigenvalues(system, la
     assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING * 10)
     assert orbit.frequency == pytest.approx(abs(whirl.frequency), rel=ROUNDING * 10)
     assert orbit.mean == pytest.approx([0.0, 0.0], abs=ROUNDING * 10)
-    multipliers = sorted(np.exp(np.array(whirl.eigenvalues) * orbit.period), key=lambda m: (-abs(m), -m.imag))
-    found = sorted(orbit.multipliers, key=lambda m: (-abs(m), -m.imag))
-    assert found == pytest.approx(multipliers, abs=error)
+    multipliers = np.exp(np.array(whirl.eigenvalues) * orbit.period)
+    assert_same_eigenvalues(orbit.multipliers, multipliers, tolerance=error / np.abs(multipliers).max())
     assert orbit.stable == whirl.stable
 
 
 @pytest.mark.parametrize(
-    "pin", [FIG_5, FIG_6, replace(HEAVY, offset=0.05), replace(FIG_5, disc_speed=3.0, offset=-0.1)]
+    "pin", [FIG_6, replace(HEAVY, offset=0.05), replace(FIG_5, disc_speed=3.0, offset=-0.1)]
 )
 def test_whirl_with_an_offset_is_periodic_and_has_a_multiplier_of_one(pin):
     orbit = whirl_orbit(pin)
@@ -201,12 +201,6 @@ def test_orbit_started_at_its_rightmost_point_is_the_same_orbit(round_the_axis):
     assert sorted(map(abs, other.multipliers)) == pytest.approx(sorted(map(abs, orbit.multipliers)), abs=1e-7)
 
 
-def test_whirl_that_does_not_cross_the_x_axis_is_refused_as_a_start():
-    near = whirl_orbit(at_offset(0.0165), tolerance=1e-9, samples=2)
-    with pytest.raises(RuntimeError, match=r"does not cross y = 0 m, from one that starts elsewhere"):
-        whirl_orbit(at_offset(0.0199), guess=near, tolerance=1e-9)
-
-
 @pytest.fixture(scope="module")
 def settled():
     """Return a motion of the disc of Fig. 11 from near the axis to its modulated cycle."""
@@ -259,7 +253,9 @@ def test_whirl_of_constant_radius_is_refused_as_a_modulated_cycle():
         modulated_cycle(steady, spiral)
 
 
-@pytest.mark.parametrize("load", [0.05, 0.078])
-def test_failed_shooting_reports_the_parameters_where_it_stopped(load):
-    with pytest.raises(RuntimeError, match=r"no whirl near the guess .*disc_speed = 1\.2 rad/s.*nearby load"):
-        whirl_orbit(replace(FIG_6, friction_force=load), tolerance=1e-9)
+def test_failed_shooting_reports_the_parameters_where_it_stopped_and_the_next_guess():
+    reported = (
+        r"no whirl near the guess .*disc_speed = 1\.2 rad/s.*nearby load.*y = 0 m, from one that starts"
+    )
+    with pytest.raises(RuntimeError, match=reported):
+        whirl_orbit(replace(FIG_6, friction_force=0.078), tolerance=1e-9)

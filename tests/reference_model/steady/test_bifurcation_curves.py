@@ -64,10 +64,7 @@ def test_across_a_hopf_curve_a_whirl_changes_its_stability_and_across_a_fold_two
 
     for kind, change in (("Hopf", 0), ("fold", 2)):
         for load in crossings(SPEED_LOAD, kind, "disc_speed", 1.5, law):
-            (before, growing_before), (after, growing_after) = (
-                unstable(load * 0.9999),
-                unstable(load * 1.0001),
-            )
+            (before, growing_before), (after, growing_after) = map(unstable, (load * 0.9999, load * 1.0001))
             assert abs(after - before) == change
             if kind == "Hopf":
                 assert abs(growing_after - growing_before) == 2
@@ -85,11 +82,8 @@ def test_the_onset_curve_is_the_closed_form(law):
 def test_curves_do_not_depend_on_the_step(kind):
     coarse, fine = traced(SPEED_LOAD, kind), traced(SPEED_LOAD, kind, step=0.02)
     assert len(coarse) == len(fine)
-    ends = [
-        np.array(sorted(c.parameters[i].tolist() for c in curves for i in (0, -1)))
-        for curves in (coarse, fine)
-    ]
-    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+    ends = [sorted(c.parameters[i].tolist() for c in curves for i in (0, -1)) for curves in (coarse, fine)]
+    assert np.array(ends[0]) == pytest.approx(np.array(ends[1]), rel=1e-9)
 
 
 def test_finer_search_finds_no_more_curves(monkeypatch):
@@ -100,16 +94,11 @@ def test_finer_search_finds_no_more_curves(monkeypatch):
 
 
 def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
-    mirrored = ParameterPlane(
-        replace(FIG11, shaft_speed=-1.25),
-        SPEED_LOAD.names,
-        (-3.0, SPEED_LOAD.lower[1]),
-        (-1.3, SPEED_LOAD.upper[1]),
+    mirrored = replace(
+        SPEED_LOAD, disc=replace(FIG11, shaft_speed=-1.25), lower=(-3.0, 0.001), upper=(-1.3, 0.08)
     )
-    here, there = (
-        crossings(plane, "Hopf", "disc_speed", speed)
-        for plane, speed in ((SPEED_LOAD, 1.5), (mirrored, -1.5))
-    )
+    here = crossings(SPEED_LOAD, "Hopf", "disc_speed", 1.5)
+    there = crossings(mirrored, "Hopf", "disc_speed", -1.5)
     assert len(here) == 2
     assert there == pytest.approx(here, rel=1e-12)
 

@@ -6,9 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disc_equations import (
-    FIG_9,
-)
+from disc_equations import FIG_9, eq_23
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
@@ -37,54 +35,56 @@ def whirling(gain, load=1.0):
     )  # fmt: skip
 
 
-def plain_shares(law, radius, slip, rim):
-    """Return F/μN and M/μN as the paper and the notes print them, for arrays."""
+def friction_at(disc, law, slip, spin):
+    """Return force in N and moment in N m, for arrays of slip and relative spin, by (23) or elliptic integrals."""
     if law is ThreeTermRing:
-        square = slip**2 + rim**2
-        both = 0.75 * (slip * rim / square) ** 2
-        force = slip / np.sqrt(square) * (1.0 - rim**2 / (2.0 * square) + both)
-        return force, radius * rim / np.sqrt(square) * (1.0 - slip**2 / (2.0 * square) + both)
+        force, _, moment = eq_23(disc)(slip, 0.0, spin, 0.0)
+        return -force, moment
+    rim = disc.contact_radius * spin
     total, difference = slip + rim, slip - rim
     complement = (difference / total) ** 2
     E, K = ellipe(1.0 - complement), ellipkm1(complement)
     force = (total * E + difference * K) / (np.pi * slip)
-    return force, radius * (total * E - difference * K) / (np.pi * rim)
+    moment = disc.contact_radius * (total * E - difference * K) / (np.pi * rim)
+    return disc.friction_force * force, disc.friction_force * moment
 
 
-def spin_at(disc, law, slip):
-    """Return S at given slips U by bisection of the torque balance, because b|ω − Ω| − bS falls and M grows."""
+def friction_by_slip(disc, law, slip):
+    """Return the force at given slips by bisection of the torque balance, because b|ω − Ω| − bS falls and M grows."""
     low, high = np.zeros_like(slip), np.full_like(slip, abs(disc.disc_speed - disc.shaft_speed))
     for _ in range(50):
         middle = 0.5 * (low + high)
-        moment = plain_shares(law, disc.contact_radius, slip, disc.contact_radius * middle)[1]
-        too_fast = disc.shaft_damping * (middle + 0.0) + disc.friction_force * moment > shaft_torque(disc)
+        too_fast = disc.shaft_damping * middle + friction_at(disc, law, slip, middle)[1] > shaft_torque(disc)
         low, high = np.where(too_fast, low, middle), np.where(too_fast, middle, high)
-    return 0.5 * (low + high)
+    return friction_at(disc, law, slip, 0.5 * (low + high))[0]
+
+
+def pull(disc, d):
+    return (
+        disc.stiffness * d + disc.hardening * d**3 + disc.stop_stiffness * np.maximum(d - disc.stop_gap, 0.0)
+    )
 
 
 def brackets_of_radii(disc, law, whirl):
     """Return pairs of neighbouring radii between which the balance of forces changes sign, from 1e-4 of the largest
     radius on, where the plain form of the law is accurate.
     """
-    k, speed = disc.natural_frequency, abs(disc.disc_speed)
+    speed, k = abs(disc.disc_speed), disc.natural_frequency
     largest = disc.friction_force / (disc.damping * k) if whirl else abs(disc.offset)
-    radius = largest * (
-        np.concatenate((np.geomspace(1e-4, 1e-2, 200), np.linspace(1e-2, 1.0 + 1e-9, 1500)[1:]))
+    radius = largest * np.concatenate(
+        (np.geomspace(1e-4, 1e-2, 200), np.linspace(1e-2, 1.0 - 1e-9, 1500)[1:])
     )
-    slip = (speed - k if whirl else speed) * radius
-    spin = spin_at(disc, law, slip)
-    force = disc.friction_force * plain_shares(law, disc.contact_radius, slip, disc.contact_radius * spin)[0]
     if whirl:
-        excess = disc.damping * k * radius - force
+        turning = np.sqrt(pull(disc, radius) / (disc.mass * radius))
+        slip = np.maximum(speed - turning, 1e-12 * speed) * radius
+        excess = disc.damping * turning * radius - friction_by_slip(disc, law, slip)
     else:
-        springs = disc.stiffness * disc.offset
-        excess = (disc.stiffness * radius) ** 2 + force**2 - springs**2
+        excess = friction_by_slip(disc, law, speed * radius) - pull(disc, np.sqrt(disc.offset**2 - radius**2))
     change = np.flatnonzero(np.diff(np.sign(excess)) != 0.0)
     return list(zip(radius[change], radius[change + 1], strict=True))
 
 
 def random_disc(rng, whirl):
-
     def size(least, most):
         return 10.0 ** rng.uniform(math.log10(least), math.log10(most))
 
@@ -95,8 +95,11 @@ def random_disc(rng, whirl):
         disc_speed=speed, offset=0.0 if whirl else rng.choice((-1.0, 1.0)) * size(0.03, 3.0),
         contact_radius=size(0.1, 3.0), shaft_damping=size(0.01, 10.0), shaft_speed=speed + rng.uniform(-2.0, 2.0),
     )  # fmt: skip
-    unit = smallest_load_with_whirl(disc) if whirl else disc.stiffness * abs(disc.offset)
-    return replace(disc, friction_force=unit * size(0.5, 1.6))
+    load = size(0.5, 1.6) * (smallest_load_with_whirl(disc) if whirl else disc.stiffness * abs(disc.offset))
+    reach = load / (disc.damping * k) if whirl else abs(disc.offset)
+    harder = {"hardening": size(0.01, 1.0) * (k / reach) ** 2, "stop_gap": size(0.1, 1.0) * reach}
+    harder["stop_stiffness"] = size(0.1, 10.0) * k**2 * rng.integers(2)
+    return replace(disc, friction_force=load, **(harder if rng.random() < 0.5 else {}))
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -107,13 +110,9 @@ def test_steady_motions_agree_with_a_dense_search_over_the_radius(whirl, law):
     numbers = set()
     for _ in range(40):
         disc = random_disc(rng, whirl)
+        find, why = (whirls, why_no_whirl) if whirl else (self_centred_equilibria, why_no_equilibrium)
         contact = law(disc.contact_radius)
-        if whirl:
-            radii = sorted(motion.radius for motion in whirls(disc, contact))
-        else:
-            radii = sorted(
-                math.hypot(motion.x, motion.y) for motion in self_centred_equilibria(disc, contact)
-            )
+        radii = sorted(math.hypot(*motion.state[:2]) for motion in find(disc, contact))
         left = list(radii)
         brackets = brackets_of_radii(disc, law, whirl)
         for low, high in brackets:
@@ -121,14 +120,15 @@ def test_steady_motions_agree_with_a_dense_search_over_the_radius(whirl, law):
             assert inside, f"{disc}: none of {radii} between {low} and {high}"
             left.remove(inside[0])
         assert len(left) % 2 == 0, f"{disc}: {left} outside {brackets}"  # pairs within one step of the search
+        assert (why(disc, contact) is None) == bool(radii)
         numbers.add(len(radii))
     assert numbers >= ({0, 1, 2} if whirl else {0, 1})
 
 
-@pytest.mark.parametrize(("gain", "width"), [(1.5, 9e-4), (1.2, 8e-7), (1.12, 6e-10)])
+@pytest.mark.parametrize(("gain", "width"), [(1.5, 9e-4), (1.12, 6e-10)])
 def test_three_whirls_are_found_in_a_very_narrow_peak(gain, width):
     """For a gain just above 1, peak and dip are exponentially close to U = W and to each other."""
-    distances = np.geomspace(1e-14, 0.1, 4000)
+    distances = np.geomspace(1e-14, 0.1, 1500)
     ring = Ring(1.0)
 
     def arm(slip, rim):
@@ -143,8 +143,7 @@ def test_three_whirls_are_found_in_a_very_narrow_peak(gain, width):
         assert len(whirls(disc)) == number
 
 
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("gain", [5.0, 30.0])
+@pytest.mark.parametrize(("gain", "law"), [(5.0, Ring), (30.0, ThreeTermRing)])
 def test_smallest_load_with_a_whirl_is_a_fold(gain, law):
     disc, contact = whirling(gain), law(1.0)
     load = smallest_load_with_whirl(disc, contact)
@@ -180,12 +179,12 @@ NEIGHBOURS = 1.0 + np.finfo(float).eps * np.arange(-4, 5)
 
 def test_at_the_onset_there_is_no_whirl_of_zero_size():
     """Below the gain 2 the largest arm is the one of pure spin, 1 + gain/2, and the arm is flat nearby."""
-    for gain in (2.0, 1.9, 1.7, 0.3, 0.1):
+    for gain in (2.0, 1.7, 0.1):
         for load in NEIGHBOURS / (1.0 + gain / 2.0):
             assert whirls(whirling(gain, float(load))) == ()
 
 
-@pytest.mark.parametrize("gain", [0.1, 0.3, 1.0, 3.0])
+@pytest.mark.parametrize("gain", [0.1, 3.0])
 def test_whirl_with_equal_slip_and_rim_speed_is_found_once(gain):
     """By (23), U = W takes b|ω − Ω|/μN = (1 + gain)·0.9375/√2."""
     for load in NEIGHBOURS * math.sqrt(2.0) / 0.9375 / (1.0 + gain):
@@ -212,27 +211,22 @@ def test_slip_near_sticking_is_proportional_to_the_missing_load(law):
     assert np.divide(*sizes) == pytest.approx([2.0, 2.0], rel=1e-6)
 
 
-@pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 0.8}])
-@pytest.mark.parametrize("load", [0.01, 0.0999])
-def test_disc_without_relative_spin_has_the_equilibrium_of_a_pin(changes, load):
-    disc = replace(FIG8, friction_force=load, **changes)
-    (equilibrium,) = self_centred_equilibria(disc)
-    (of_pin,) = self_centred_equilibria(pin_of(disc))
+@pytest.mark.parametrize(
+    "without_moment", [lambda disc: {"shaft_damping": 0.0}, lambda disc: {"shaft_speed": disc.disc_speed}]
+)
+def test_disc_without_relative_spin_has_the_motions_of_a_pin(without_moment):
+    disc = replace(FIG8, friction_force=0.0999, **without_moment(FIG8))
+    (equilibrium,), (of_pin,) = self_centred_equilibria(disc), self_centred_equilibria(pin_of(disc))
     assert (equilibrium.x, equilibrium.y) == pytest.approx((of_pin.x, of_pin.y), rel=1e-14)
     assert equilibrium.spin == disc.disc_speed
     assert self_centred_equilibria(replace(disc, friction_force=0.1001)) == ()
-
-
-@pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 1.5}])
-def test_disc_without_relative_spin_has_the_whirl_of_a_pin(changes):
-    disc = replace(FIG11, friction_force=1e-6, **changes)
-    (whirl,) = whirls(disc)
-    (of_pin,) = whirls(pin_of(disc))
+    disc = replace(FIG11, friction_force=1e-6, **without_moment(FIG11))
+    (whirl,), (of_pin,) = whirls(disc), whirls(pin_of(disc))
     assert (whirl.radius, whirl.frequency, whirl.spin) == (of_pin.radius, of_pin.frequency, 1.5)
     assert smallest_load_with_whirl(disc) == 0.0
 
 
-@pytest.mark.parametrize("size", [1e-3, 1e-8, 1e-14])
+@pytest.mark.parametrize("size", [1e-3, 1e-14])
 def test_relative_spin_with_a_weak_shaft_agrees_with_the_first_order(size):
     """To first order M = R·W/(2U) gives S = b(ω − Ω)/(μN·R²/(2U) + b), and U is that of a pin up to S²."""
     disc = replace(FIG8, shaft_damping=size * 0.01)
@@ -244,7 +238,7 @@ def test_relative_spin_with_a_weak_shaft_agrees_with_the_first_order(size):
     assert 0.8 - equilibrium.spin == pytest.approx(expected, rel=size**2, abs=1e-15)
 
 
-@pytest.mark.parametrize("offset", [1e-3, 1e-9, 1e-15])
+@pytest.mark.parametrize("offset", [1e-3, 1e-15])
 def test_deflection_by_a_small_offset_is_linear(offset):
     """Near the axis friction acts like a damper μN/(2W) that turns with ω: (C − iω·μN/(2W))·z = C·X0."""
     disc = replace(FIG8, friction_force=0.01, offset=offset)
@@ -285,35 +279,28 @@ NO_EQUILIBRIUM = [
     ({"friction_force": 0.12}, r"friction_force = 0\.12 N: together with the shaft's moment of 0\.003 N m friction "
      r"holds a force of 0\.1148\d* N, at least the spring force stiffness·\|offset\| = 0\.1 N"),
     ({"shaft_speed": 0.8, "friction_force": 0.1}, r"holds a force of 0\.1 N"),
-    ({"shaft_damping": 0.0, "friction_force": 0.1}, r"holds a force of 0\.1 N"),
     ({"shaft_damping": 0.0, "offset": 0.0}, r"holds a force of 0\.05 N.*= 0 N"),
     ({"disc_speed": 0.0, "friction_force": 0.05}, r"disc_speed = 0 rad/s.*moment of the shaft, 0\.005 N m"),
-    ({"stiffness": 0.0}, r"holds a force"),
+    ({"stiffness": 0.0}, "holds a force"),
     ({"stiffness": 0.0, "disc_speed": 0.0}, "stiffness = 0 N/m: without springs the disc may rest at any position"),
     ({"stiffness": 0.0, "friction_force": 0.0}, "stiffness = 0 N/m"),
     ({"shaft_damping": 0.0, "friction_force": 0.0}, "shaft_damping = 0 N m s/rad, friction_force = 0 N"),
 ]  # fmt: skip
-
-
-@pytest.mark.parametrize(("changes", "reason"), NO_EQUILIBRIUM)
-def test_missing_equilibrium_is_explained(changes, reason):
-    disc = replace(FIG8, **changes)
-    assert self_centred_equilibria(disc) == ()
-    assert re.search(reason, why_no_equilibrium(disc))
-
-
 NO_WHIRL = [
     ({"friction_force": 0.0205}, r"friction_force = 0\.0205 N: a whirl exists only above 0\.0205479 N"),
-    ({"friction_force": 0.0}, "friction_force = 0"),
-    ({"damping": 0.0}, "damping = 0"),
-    ({"stiffness": 0.0}, "stiffness = 0"),
-    ({"disc_speed": 0.9}, r"disc_speed = 0\.9 rad/s.*natural frequency 1 rad/s"),
-    ({"disc_speed": -1.0}, "disc_speed = -1 rad/s"),
+    *(({name: 0.0}, f"{name} = 0") for name in ("friction_force", "damping", "stiffness")),
+    ({"disc_speed": -1.0}, "disc_speed = -1 rad/s.*natural frequency 1 rad/s"),
 ]
 
 
-@pytest.mark.parametrize(("changes", "reason"), NO_WHIRL)
-def test_missing_whirl_is_explained(changes, reason):
-    disc = replace(FIG11, **changes)
-    assert whirls(disc) == ()
-    assert re.search(reason, why_no_whirl(disc))
+@pytest.mark.parametrize(
+    ("find", "why", "disc", "changes", "reason"),
+    [
+        *((self_centred_equilibria, why_no_equilibrium, FIG8, *case) for case in NO_EQUILIBRIUM),
+        *((whirls, why_no_whirl, FIG11, *case) for case in NO_WHIRL),
+    ],
+)
+def test_missing_steady_motion_is_explained(find, why, disc, changes, reason):
+    disc = replace(disc, **changes)
+    assert find(disc) == ()
+    assert re.search(reason, why(disc))

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from disc_equations import assert_same_eigenvalues
 from plain_engines import support_force
-from scipy.optimize import brentq
 
 from compare.claims.parameters import FIG8, FIG11
 from reference_model import (
@@ -19,14 +18,10 @@ from reference_model import (
     why_no_equilibrium,
     why_no_whirl,
 )
-from reference_model.contact.contact_law import Ring
 from reference_model.formulas import pin as formulas
-from reference_model.formulas.disc import pin_of
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 SUPPORTS = [
-    {"hardening": 30.0},
-    {"stop_gap": 0.03, "stop_stiffness": 2.0},
     {"stop_gap": 0.5, "stop_stiffness": 2.0},
     {"hardening": 5.0, "stop_gap": 0.04, "stop_stiffness": 20.0},
 ]
@@ -68,7 +63,7 @@ def test_pin_ends_by_sticking_if_the_support_would_carry_it_faster_than_the_disc
     assert trajectory.phases[-1].end - trajectory.phases[-1].start > 50.0
 
 
-@pytest.mark.parametrize("disc", [FIG8, FIG11, replace(FIG8, disc_speed=1.5, offset=0.0)])
+@pytest.mark.parametrize("disc", [FIG8, replace(FIG8, disc_speed=1.5, offset=0.0)])
 def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
     stop = replace(disc, stiffness=0.4, stop_stiffness=0.6)
     for found, expected in zip(self_centred_equilibria(stop), self_centred_equilibria(disc), strict=True):
@@ -84,55 +79,8 @@ def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
             assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues, tolerance=1e-10)
 
 
-OF_A_DISC = [
-    {"hardening": 40.0},
-    {"stop_gap": 0.03, "stop_stiffness": 3.0},
-    {"hardening": 10.0, "stop_gap": 0.02, "stop_stiffness": 1.0},
-]
-
-
-def circles_by_radius(disc, contact):
-    """Return the radii of all whirls by a search over radii instead of ratios."""
-
-    def lacking(rho):
-        turning = math.sqrt(
-            math.hypot(*support_force(pin_of(disc), [rho, 0.0, 0.0, 0.0])) / (disc.mass * rho)
-        )
-        share = disc.damping * turning * rho / disc.friction_force
-        slip = (disc.disc_speed - turning) * rho
-        if slip <= 0.0 or not 0.0 < share < 1.0:
-            return math.nan
-
-        def weaker(log_spin):
-            return contact.shares(slip, slip * math.exp(log_spin)).resistance - share
-
-        if weaker(-40.0) < 0.0 or weaker(60.0) > 0.0:
-            return math.nan
-        spin = slip * math.exp(brentq(weaker, -40.0, 60.0, xtol=1e-13, rtol=1e-15))
-        moment = disc.friction_force * contact.shares(slip, spin).moment
-        return moment + disc.shaft_damping * (spin - abs(disc.disc_speed - disc.shaft_speed))
-
-    radii = np.geomspace(1e-5, 1.0, 600)
-    values = [lacking(rho) for rho in radii.tolist()]
-    return [
-        brentq(lacking, radii[i], radii[i + 1], rtol=1e-13)
-        for i in reversed(range(len(radii) - 1))
-        if values[i] * values[i + 1] < 0.0
-    ]
-
-
-@pytest.mark.parametrize("load", [0.02, 0.0225, 0.026, 0.09])
-@pytest.mark.parametrize("support", [*OF_A_DISC, {"stop_gap": 0.05, "stop_stiffness": 5.0}])
-def test_whirls_of_the_disc_agree_with_a_search_over_radii(support, load):
-    disc = replace(FIG11, friction_force=load, **support)
-    expected = circles_by_radius(disc, Ring(0.12))
-    found = whirls(disc)
-    assert [whirl.radius for whirl in found] == pytest.approx(expected, rel=1e-9)
-    assert (why_no_whirl(disc) is None) == bool(found)
-
-
 def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
-    assert onset_load(replace(FIG11, **OF_A_DISC[2])) == onset_load(FIG11)
+    assert onset_load(replace(FIG11, hardening=10.0, stop_gap=0.02, stop_stiffness=1.0)) == onset_load(FIG11)
     # Just above the onset the whirl is small, because its square is proportional to the excess load.
     load = 1.0001 * onset_load(FIG11)
     linear, hard = (

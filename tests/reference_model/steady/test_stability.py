@@ -55,8 +55,7 @@ def test_slow_eigenvalue_of_a_strongly_damped_equilibrium_is_accurate_to_roundin
 
 TURNING = [
     replace(FIG11, disc_speed=speed, shaft_speed=shaft)
-    for speed in (1.5, -1.5, 4.0)
-    for shaft in (1.25, -1.25, 9.0)
+    for speed, shaft in ((1.5, 1.25), (-1.5, 1.25), (4.0, 9.0))
 ]
 
 
@@ -73,16 +72,12 @@ def test_centred_rotation_loses_stability_at_the_onset_load_with_the_natural_fre
     k = disc.natural_frequency
     assert critical.real == pytest.approx(0.0, abs=1e-13 * k)
     assert abs(critical.imag) == pytest.approx(k, rel=1e-13)
-    below, above = (
-        self_centred_equilibria(replace(disc, friction_force=factor * load), contact)[0].stable
-        for factor in (1.0 - 1e-9, 1.0 + 1e-9)
-    )
-    assert below
-    assert not above
+    for factor in (1.0 - 1e-9, 1.0 + 1e-9):
+        (centred,) = self_centred_equilibria(replace(disc, friction_force=factor * load), contact)
+        assert centred.stable == (factor < 1.0)
 
 
-@pytest.mark.parametrize("speed", [0.0, 0.5, 1.0, -1.0])
-@pytest.mark.parametrize("share", [0.01, 0.5, 0.999])
+@pytest.mark.parametrize(("speed", "share"), [(0.0, 0.5), (1.0, 0.999), (-1.0, 0.01)])
 def test_centred_rotation_on_a_slow_master_disc_is_stable_at_every_load(speed, share):
     disc = replace(FIG11, disc_speed=speed, shaft_speed=speed - 0.25)
     with pytest.raises(ValueError, match=f"disc_speed = {speed:g} rad/s.*natural frequency 1 rad/s"):
@@ -92,7 +87,7 @@ def test_centred_rotation_on_a_slow_master_disc_is_stable_at_every_load(speed, s
     assert self_centred_equilibria(disc)[0].stable
 
 
-@pytest.mark.parametrize("load", [0.0, 1e-9, 0.05, 0.09])
+@pytest.mark.parametrize("load", [0.0, 0.09])
 def test_undamped_equilibrium_is_only_marginally_stable(load):
     (equilibrium,) = self_centred_equilibria(replace(FIG_5, damping=0.0, friction_force=load))
     assert equilibrium.eigenvalues[0] == 1j
