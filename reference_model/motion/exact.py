@@ -81,7 +81,7 @@ def simulate_with(
     states[0] = state
     if not np.all(np.isfinite(states)):
         raise SimulationError(
-            f"the states are not finite after t = {moments[np.argmin(np.isfinite(states).all(axis=1))]:g}  s: "
+            f"the states are not finite after t = {moments[np.argmin(np.isfinite(states).all(axis=1))]:g} s: "
             "the parameters differ by too many orders of magnitude"
         )
     begun = [(kind, run.seconds(t), frame.states(y)) for kind, t, y in run.phases]
