@@ -87,6 +87,7 @@ def test_a_change_that_is_refused_leaves_the_friction_as_it_was():
     mbs.Assemble()
     with pytest.raises(ValueError, match="normal_load = -1 N: it must be >= 0"):
         friction.change(friction_coefficient=2.0 * MU, normal_load=-1.0)
+    friction.change()  # keeps both
     run_explicitly(mbs, 1.0, 100)
     assert spins(mbs, *bodies) == expected_spins(MU * LOAD)
 
@@ -99,8 +100,6 @@ class Ramp:
 @pytest.mark.parametrize(
     ("function", "expected"),
     [
-        (lambda radius: 10.0 * radius, 30.0),
-        (lambda slip_speed, time: 10.0 * slip_speed + time, 52.0),
         (lambda slip_speed, radius, time: 100.0 * slip_speed + 10.0 * radius + time, 532.0),
         (lambda *, radius, time: 10.0 * radius + time, 32.0),
         (lambda time, gain=4.0, radius=1.0: gain * time + radius, 11.0),
@@ -111,11 +110,10 @@ class Ramp:
         (lambda time: np.float64(3.0), 3.0),
     ],
 )
-@pytest.mark.parametrize("of_load", [False, True])
-def test_a_function_receives_the_arguments_that_it_names(function, expected, of_load):
+def test_a_function_receives_the_arguments_that_it_names(function, expected):
     contact = (RADIUS, CONTINUOUS, 1.0, 1e-3, NONE_HELD, RADIUS)
-    factors = LoadAndCoefficient(contact, *((0.5, function) if of_load else (function, 0.5)))
-    assert factors.friction_force(2.0, 3.0, 5.0, -7.0) == 0.5 * expected
+    for factors in ((0.5, function), (function, 0.5)):
+        assert LoadAndCoefficient(contact, *factors).friction_force(2.0, 3.0, 5.0, -7.0) == 0.5 * expected
 
 
 def slip_under_control(disc_kind, steps):
@@ -126,10 +124,10 @@ def slip_under_control(disc_kind, steps):
     constant, gain, target, sensor = 2.0, 0.3, 11.0, None
     mbs = new_model()
     master = rotor(mbs, MASTER_INERTIA, MASTER_SPIN)
-    if disc_kind == "planar":
-        disc = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0, 0.0, SPIN])
-    else:
-        disc = rotor(mbs, INERTIA, SPIN)
+    planar = disc_kind == "planar"
+    disc = (
+        planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0, 0.0, SPIN]) if planar else rotor(mbs, INERTIA, SPIN)
+    )
 
     def load(time):
         return constant + gain * (abs(mbs.GetSensorValues(sensor)) - target)
@@ -152,8 +150,8 @@ def slip_under_control(disc_kind, steps):
 def test_a_controller_of_the_load_brings_the_slip_to_its_target_exponentially(disc_kind):
     slip, expected = slip_under_control(disc_kind, None)
     assert slip == pytest.approx(expected, rel=1e-11)
-    errors = [np.subtract(*slip_under_control(disc_kind, steps)) for steps in (50, 100, 200)]
-    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.05)
+    errors = [np.subtract(*slip_under_control(disc_kind, steps)) for steps in (100, 200)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
 
 
 @pytest.mark.parametrize(
@@ -224,7 +222,6 @@ NONSENSE = [
         lambda time: math.nan if time > 0.503 else LOAD,
         r"time = 0\.5(0[3-9]\d*|1) s\) = nan: it must",
     ),
-    ("normal_load", lambda time: 1.0 - time, r"time = 1\.?\d* s\) = -\S+ N: it must be >= 0"),
     ("normal_load", lambda time: None, r"time = 0 s\) = None: it must be a number"),
     (
         "normal_load",
