@@ -69,13 +69,10 @@ def drivetrain_states(disc, until, *, inner_radius=0.12, tolerance=1e-12):
 @pytest.mark.parametrize(
     ("change", "inner_radius"),
     [
-        ({}, 0.12),
-        ({"offset": 0.02}, 0.12),
-        ({}, 0.08),
-        ({"hardening": 300.0}, 0.12),
-        ({"stop_gap": 0.03, "stop_stiffness": 5.0}, 0.12),
+        ({"offset": 0.02, "hardening": 300.0}, 0.12),
+        ({"stop_gap": 0.03, "stop_stiffness": 5.0}, 0.08),
     ],
-    ids=["ring", "offset", "facings of finite width", "hardening", "stop"],
+    ids=["offset and hardening", "stop and facings of finite width"],
 )
 def test_the_clutch_disc_moves_as_the_reference_does(change, inner_radius):
     disc = replace(DISC, **change)
