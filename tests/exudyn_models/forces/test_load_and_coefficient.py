@@ -171,29 +171,6 @@ def test_a_load_that_depends_on_its_own_friction_is_refused_in_the_run(quantity)
         run_explicitly(mbs, 1.0, 10)
 
 
-def test_sensors_of_a_spinning_disc_show_its_braking():
-    mbs, *_, friction = spinning_disc()
-    quantities = ("transmitted_moment", "rim_slip", "centre_slip", "power", "heat", "radial_force")
-    sensors = {name: friction.add_sensor(name) for name in quantities}
-    mbs.Assemble()
-    run_explicitly(mbs, 1.0, 100)
-    stored = {name: mbs.GetSensorStoredData(sensor)[1:] for name, sensor in sensors.items()}
-    t = stored["rim_slip"][:, 0]
-    start, growth = SPIN - MASTER_SPIN, RATE * MU * LOAD
-    expected = {
-        "transmitted_moment": MU * LOAD * RADIUS + 0.0 * t,
-        "rim_slip": RADIUS * (start + growth * t),
-        "centre_slip": 0.0 * t,
-        "power": -MU * LOAD * RADIUS * (start + growth * t),
-        "heat": -MU * LOAD * RADIUS * (start * t + growth * t**2 / 2.0),
-        "radial_force": np.zeros((len(t), 3)),
-    }
-    assert len(t) >= 100
-    for name, values in expected.items():
-        found = stored[name][:, 1:]
-        np.testing.assert_allclose(found, values.reshape(found.shape), rtol=1e-11, atol=1e-12, err_msg=name)
-
-
 @pytest.mark.parametrize(
     ("coefficient", "load"),
     [(MU, LOAD), (lambda slip_speed: MU * math.exp(-slip_speed), lambda time: LOAD * (1.0 + time))],
