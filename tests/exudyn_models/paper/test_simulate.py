@@ -71,16 +71,14 @@ def test_the_implicit_solver_has_an_error_of_first_order_in_the_tolerance(name):
     assert errors[1] < 1e-4
 
 
-@pytest.mark.parametrize("name", ["pin", "points"])
 @pytest.mark.parametrize(
     ("integrator", "order", "step"),
     [("RK44", 4, 0.1), ("RK67", 6, 0.2), ("GeneralizedAlpha", 2, 0.1), ("TrapezoidalIndex2", 2, 0.1)],
 )
-def test_integrators_converge_at_their_order(name, integrator, order, step):
-    system, start = SLIPPING[name]
-    if name == "points":
-        start = [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # slips so fast that U > W throughout and friction is smooth
-    times = [0.0, 100.0 if name == "pin" else 3.0]
+def test_integrators_converge_at_their_order(integrator, order, step):
+    """A study measures the orders for a pin."""
+    system, start = SLIPPING["points"][0], [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # so fast that friction is smooth
+    times = [0.0, 3.0]
     expected = slide(system, start, times).y[:, -1]
     errors = [
         largest(simulate_fixed_step(system, start, times, integrator=integrator, step=h).at_end - expected)
