@@ -1,4 +1,4 @@
-"""Exact stick in machines with known motions: a dry pendulum, a spring-loaded brake, and Modelica's examples."""
+"""Exact stick in machines with known motions: a dry pendulum, a self-energising brake, and Modelica's examples."""
 
 import math
 
@@ -11,7 +11,6 @@ from free_bodies import (
     drive,
     items,
     new_model,
-    node_sensor,
     planar_body,
     rate_of,
     rotor,
@@ -37,24 +36,14 @@ def sensed(mbs, item, kind=exu.OutputVariableType.Force):
     return lambda: float(np.linalg.norm(mbs.GetSensorValues(sensor)))
 
 
-def coupled(mbs, nodes, connector=items.CoordinateConstraint, **law):
-    """Return the item of a connector between the first coordinates of two nodes."""
-    ends = [coordinate(mbs, node) for node in nodes]
-    return mbs.AddObject(connector(markerNumbers=ends, **law))
-
-
 def one_way_clutch(mbs, speed):
     """Return a driving and a driven rotor of 1 and 0.5 kg m² at one speed (rad/s), and the clutch between them."""
     driver, driven = rotor(mbs, 1.0, speed), rotor(mbs, 0.5, speed)
-    clutch = add_ring_friction(
-        mbs,
-        driver,
-        driven,
-        contact_radius=0.1,
-        friction_coefficient=lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
-        normal_load=1e4,
-    )
-    return driver, driven, clutch
+    law = {
+        "friction_coefficient": lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
+        "normal_load": 1e4,
+    }
+    return driver, driven, add_ring_friction(mbs, driver, driven, contact_radius=0.1, **law)
 
 
 def pendulum(reaction):
@@ -137,16 +126,11 @@ def self_energising_brake(gain):
     """
     mbs = new_model()
     wheel, flywheel = rotor(mbs, 0.5, 20.0), rotor(mbs, 0.5, 20.0)
-    moment = sensed(mbs, coupled(mbs, [wheel, flywheel]))
+    ends = [coordinate(mbs, node) for node in (wheel, flywheel)]
+    moment = sensed(mbs, mbs.AddObject(items.CoordinateConstraint(markerNumbers=ends)))
     grows = 2.0 * gain / (0.1 * 0.5)
-    add_ring_friction(
-        mbs,
-        None,
-        wheel,
-        contact_radius=0.1,
-        friction_coefficient=0.5,
-        normal_load=lambda: 40.0 + grows * moment(),
-    )
+    law = {"friction_coefficient": 0.5, "normal_load": lambda: 40.0 + grows * moment()}
+    add_ring_friction(mbs, None, wheel, contact_radius=0.1, **law)
     mbs.Assemble()
     return mbs, wheel
 
@@ -285,27 +269,3 @@ def test_a_one_way_clutch_without_a_load_rests():
     driver, driven, _ = one_way_clutch(mbs, 3.0)
     assert solve_dynamic(mbs, settings_of(10.0, 1000), TRAPEZOIDAL) == []
     assert rate_of(mbs, driver) == rate_of(mbs, driven) == 3.0
-
-
-@pytest.mark.parametrize("solver", IMPLICIT)
-def test_a_gear_with_an_efficiency_has_the_accelerations_of_the_closed_form(solver):
-    """Modelica's LossyGear: bearing friction under the moment of the gear, which depends on the direction of
-    power."""
-    ratio, efficiency, drives, brakes = 2.0, 0.8, 3.0, -2.0
-    mbs = new_model()
-    shafts = [rotor(mbs, 1.0, 0.0), rotor(mbs, 0.5, 0.0)]
-    drive(mbs, shafts[0], lambda t: drives if t < 1.0 else brakes)
-    moment = sensed(mbs, coupled(mbs, shafts, factor1=ratio))
-
-    def loss(time):
-        return moment() * (1.0 / efficiency - 1.0 if time < 1.0 else 1.0 - efficiency)
-
-    add_ring_friction(mbs, None, shafts[0], contact_radius=1.0, friction_coefficient=1.0, normal_load=loss)
-    speed = node_sensor(mbs, shafts[0], exu.OutputVariableType.Coordinates_t)
-    solve_dynamic(mbs, settings_of(2.0, 200), solver, breaks=[1.0])
-    times, speeds = mbs.GetSensorStoredData(speed).T
-    far = 0.5 / ratio**2  # inertia of the second shaft at the first
-    top = drives / (1.0 + far / efficiency)
-    np.testing.assert_allclose(speeds[times <= 1.0], top * times[times <= 1.0], atol=1e-7)
-    after = top + brakes / (1.0 + far * efficiency) * (times[times > 1.0] - 1.0)
-    np.testing.assert_allclose(speeds[times > 1.0], after, atol=1e-7)

@@ -17,8 +17,6 @@ from free_bodies import (
     settings_of,
 )
 from free_bodies import changes_of as run
-from scipy.integrate import solve_ivp
-from scipy.special import ellipe, ellipk
 
 from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
 from reference_model import simulate
@@ -42,27 +40,12 @@ def push(mbs, node, place, load):
 
 
 def stop_of_ring(speed, spin):
-    """Return the time when a ring on the ground stops; u/S is constant at the end of its motion."""
-
-    def decelerations(_, motion):
-        u, w = abs(motion[0]), RADIUS * abs(motion[1])
-        larger, smaller = max(u, w), min(u, w)
-        m = (smaller / larger) ** 2
-        by_larger = 2.0 / math.pi * ellipe(m)
-        by_smaller = 2.0 / math.pi * (ellipe(m) - (1.0 - m) * ellipk(m)) * larger / smaller
-        by_u, by_w = (by_larger, by_smaller) if u >= w else (by_smaller, by_larger)
-        force = COEFFICIENT * LOAD
-        return [-force * by_u / MASS, -force * RADIUS * by_w / INERTIA]
-
-    def slow(_, motion):
-        return motion[0] - 1e-8
-
-    slow.terminal = True
-    motion = solve_ivp(
-        decelerations, (0.0, 1.0), [speed, spin], method="DOP853", rtol=1e-11, atol=1e-14, events=slow
-    )
-    ending = motion.y[:, -1]
-    return motion.t[-1] - ending[0] / decelerations(0.0, ending)[0]
+    """Return the time when a ring on the ground stops."""
+    ring = DiscOnDisc(
+        mass=MASS, polar_inertia=INERTIA, contact_radius=RADIUS, friction_force=COEFFICIENT * LOAD,
+        stiffness=0.0, damping=0.0, disc_speed=0.0, shaft_damping=0.0, shaft_speed=0.0,
+    )  # fmt: skip
+    return simulate(ring, [0.0, 0.0, 0.0, speed, 0.0, spin], [0.0, 1.0], tolerance=1e-11).phases[1].start
 
 
 def sliding_ring(speed, spin, loads=(LOAD,), body=planar_body):
