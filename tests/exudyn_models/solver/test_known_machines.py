@@ -11,6 +11,7 @@ from free_bodies import (
     drive,
     items,
     new_model,
+    node_sensor,
     planar_body,
     rate_of,
     rotor,
@@ -269,3 +270,26 @@ def test_a_one_way_clutch_without_a_load_rests():
     driver, driven, _ = one_way_clutch(mbs, 3.0)
     assert solve_dynamic(mbs, settings_of(10.0, 1000), TRAPEZOIDAL) == []
     assert rate_of(mbs, driver) == rate_of(mbs, driven) == 3.0
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_a_gear_with_an_efficiency_has_the_accelerations_of_the_closed_form(solver):
+    """Modelica's LossyGear: bearing friction under the moment of the gear, which closes the contact at rest."""
+    ratio, efficiency, drives, brakes = 2.0, 0.8, 3.0, -2.0
+    mbs = new_model()
+    shafts = [rotor(mbs, 1.0, 0.0), rotor(mbs, 0.5, 0.0)]
+    drive(mbs, shafts[0], lambda t: drives if t < 1.0 else brakes)
+    ends = [coordinate(mbs, shaft) for shaft in shafts]
+    moment = sensed(mbs, mbs.AddObject(items.CoordinateConstraint(markerNumbers=ends, factor1=ratio)))
+
+    def loss(time):
+        return moment() * (1.0 / efficiency - 1.0 if time < 1.0 else 1.0 - efficiency)
+
+    add_ring_friction(mbs, None, shafts[0], contact_radius=1.0, friction_coefficient=1.0, normal_load=loss)
+    speed = node_sensor(mbs, shafts[0], exu.OutputVariableType.Coordinates_t)
+    solve_dynamic(mbs, settings_of(2.0, 200), solver, breaks=[1.0])
+    times, speeds = mbs.GetSensorStoredData(speed).T
+    far = 0.5 / ratio**2  # inertia of the second shaft at the first
+    forward, backward = drives / (1.0 + far / efficiency), brakes / (1.0 + far * efficiency)
+    expected = forward * np.minimum(times, 1.0) + backward * np.maximum(times - 1.0, 0.0)
+    np.testing.assert_allclose(speeds, expected, atol=1e-7)
