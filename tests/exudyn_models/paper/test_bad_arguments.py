@@ -9,23 +9,12 @@ from exudyn_models import eigenvalues, simulate, simulate_fixed_step, simulate_w
 POINTS = replace(FIG11, contact_points=4)
 STARTS = {FIG5: [1.3, 0.0, 0.0, -1.3], FIG11: [0.05, 0.0, 0.4, 0.0, 0.05, 1.3]}
 STARTS[POINTS] = STARTS[FIG11]
-SHARED = [
-    (FIG5, {"initial_state": [0.0, 0.0, 0.0]}, "initial_state has shape"),
-    (FIG5, {"initial_state": [0.0, np.nan, 0.0, 0.0]}, r"initial_state\[1\] = nan"),
-    (POINTS, {"initial_state": [0.0] * 4}, "DiscOnDisc takes 6 numbers"),
-    (POINTS, {"initial_state": [0.0, 0.0, np.inf, 0.0, 0.0, 0.0]}, r"initial_state\[2\] = inf"),
-    (FIG5, {"times": [1.0, 0.0]}, "times must increase"),
-    (FIG5, {"times": []}, "at least one time"),
-]
+ENGINES = simulate, simulate_fixed_step, simulate_with_native_contact
 WRONG = [
-    *(
-        (engine, *row)
-        for row in SHARED
-        for engine in (simulate, simulate_fixed_step, simulate_with_native_contact)
-    ),
+    *((engine, POINTS, {"initial_state": [0.0] * 4}, "DiscOnDisc takes 6 numbers") for engine in ENGINES),
+    *((engine, FIG5, {"times": [1.0, 0.0]}, "times must increase") for engine in ENGINES),
     (simulate, FIG5, {"tolerance": 0.0}, "tolerance = 0"),
     (simulate, FIG5, {"regularisation": 0.0}, "regularisation = 0 m/s"),
-    (simulate, FIG11, {"regularisation": -1e-6}, "regularisation = -1e-06 m/s"),
     (simulate, FIG5, {"regularisation": np.inf}, "regularisation = inf"),
     (simulate, FIG11, {"solver": "magic"}, "solver = 'magic': it must be 'explicit' or 'implicit'"),
     (
@@ -53,7 +42,6 @@ def test_arguments_of_a_simulation(engine, system, change, message):
 @pytest.mark.parametrize(
     ("system", "state", "message"),
     [
-        (FIG5, [0.0, 0.0, 0.0, 0.0], "at rest, where friction has no derivative"),
         (FIG11, [0.0, 0.0, 0.0, 0.0, 0.0, FIG11.disc_speed], "at rest, where friction has no derivative"),
         # Point 0 lies where both discs have the same velocity.
         (POINTS, [0.0, 0.0, 0.0, 0.0, 0.12, FIG11.disc_speed - 1.0], "or a point of it, is at rest"),

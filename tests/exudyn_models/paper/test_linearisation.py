@@ -26,15 +26,11 @@ def largest_difference(found, expected):
 @pytest.mark.parametrize(
     "system",
     [
-        PIN,
         replace(PIN, disc_speed=-1.5),
-        replace(PIN, hardening=20.0),
         replace(PIN, hardening=5.0, stop_gap=0.01, stop_stiffness=0.7),
         DISC,  # centred rotation
-        replace(DISC, offset=0.1),
         replace(DISC, offset=0.1, disc_speed=-0.8, shaft_speed=-0.5),
-        replace(DISC, offset=0.1, hardening=20.0),
-        replace(DISC, offset=0.1, stop_stiffness=0.7),
+        replace(DISC, offset=0.1, hardening=20.0, stop_stiffness=0.7),
     ],
 )
 def test_every_equilibrium_has_the_eigenvalues_of_the_reference(system):
@@ -60,19 +56,3 @@ def test_any_slip_has_the_eigenvalues_of_the_plain_equations(system):
     # Differences have an error of step² = 1e-10 times third derivatives of friction, which are 1/slip² ~ 1e3 times
     # friction.
     assert largest_difference(eigenvalues(system, state.tolist()), np.linalg.eigvals(matrix)) < 1e-6
-
-
-def test_the_slowest_slip_is_damped_the_most():
-    """Friction is a damper μN/|u| across the slip and a constant force along it."""
-    slow = replace(PIN, disc_speed=0.0)
-    fastest = eigenvalues(slow, [PIN.offset, 0.0, 1e-11, 0.0]).real.min()
-    assert fastest == pytest.approx(-PIN.friction_force / PIN.mass / 1e-11, rel=1e-6)
-
-
-def test_without_friction_and_shaft_the_disc_is_an_oscillator_that_turns_freely():
-    disc = replace(DISC, friction_force=0.0, shaft_damping=0.0)
-    decay, k = disc.damping / disc.mass / 2.0, disc.natural_frequency
-    pair = -decay + 1j * np.sqrt(k**2 - decay**2)
-    expected = np.array([pair.conjugate()] * 2 + [pair] * 2 + [0.0])
-    # Double eigenvalues have an error of √rounding.
-    assert largest_difference(eigenvalues(disc, [0.0] * 6), expected) < 1e-7

@@ -3,7 +3,6 @@
 import cmath
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ import reference_model
 from compare.claims.parameters import FIG5, FIG11
 from exudyn_models import add_native_friction, simulate_with_native_contact
 from exudyn_models.forces.laws.places import ring_places
-from exudyn_models.paper.model import build_model
 from reference_model.systems import DiscOnDisc
 
 SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
@@ -30,17 +28,14 @@ TABLE_DISC = replace(
 )
 THROWN = [0.0, 0.0, 0.0, 0.5, 0.2, 3.0]  # turns about one of its points before it comes to rest
 CONTACT = {"friction_coefficient": 0.25, "normal_load": 2.0, "reach": 10.0}
-CAUGHT_DISC = replace(DISC, friction_force=0.2, offset=0.1)
-CAUGHT = [0.1, 0.0, 0.0, 0.0, 0.1, 1.5]  # moves with the master disc for a while
 CARRIED_ALONG = [
     0.03087753517369676, -0.12311233141527689, 5.686215448933846,
     0.18466849712291533, 0.04631630276054514, 1.5,
 ]  # fmt: skip
-"""State of the caught disc at 3.8 s, shortly before its release, because simulating rest is slow."""
+"""State of a disc that moves with the master disc, shortly before its release, because simulating rest is slow."""
 RESTING = {
     "thrown": (TABLE_DISC, THROWN, 5.0),
-    "caught": (CAUGHT_DISC, CAUGHT, 3.1),
-    "released": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
+    "released": (replace(DISC, friction_force=0.2, offset=0.1), CARRIED_ALONG, 0.2),
 }
 """System, start and span in s of motions with rests or releases of single points of a disc."""
 FEET = [(0.12, 0.0, 0.5), (-0.03, 0.07, 0.2), (-0.05, -0.06, 0.3)]
@@ -49,11 +44,11 @@ TOLERANCES = (1e-6, 1e-7)
 
 
 @pytest.mark.parametrize("kind", ["ground", "rotor", "planar"])
-@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6), (0.3, 3), (None, FEET)])
+@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6), (None, FEET)])
 @pytest.mark.parametrize("epsilon", [1e-4, 1.5, 1e3])  # Coulomb friction, some of each, viscous friction
 def test_forces_and_moments_on_both_bodies_obey_the_law(kind, radius, points, epsilon):
     rng = np.random.default_rng(1)
-    for _ in range(10):
+    for _ in range(4):
         mbs, (place, velocity, z, v) = new_model(), rng.normal(size=(4, 3))
         if kind == "planar":
             master = planar_body(mbs, 2.0, 0.7, place.tolist(), velocity.tolist())
@@ -91,12 +86,11 @@ def test_forces_and_moments_on_both_bodies_obey_the_law(kind, radius, points, ep
     ("name", "kinds", "least", "most"),
     [
         ("thrown", ["slip", "pivot", "stick"], 0.9, 1.1),
-        ("caught", ["slip", "pivot", "slip", "stick"], 0.9, math.inf),
         # Single points stay at the Coulomb limit until release; then slip grows like t² up to ε.
         ("released", ["stick", "slip"], 0.35, 0.55),
     ],
 )
-def test_a_disc_comes_to_rest_and_is_let_go_with_errors_of_first_order_but_for_the_time_of_its_release(
+def test_rest_and_release_of_a_disc_have_errors_of_first_order_except_the_time_of_release(
     name, kinds, least, most
 ):
     disc, start, span = RESTING[name]
@@ -130,16 +124,3 @@ def test_the_contact_persists_at_any_distance(system, offset, span, distance):
         system, start = replace(system, shaft_damping=0.0), [0.0, 0.0, 0.0, -1.0, 0.0, 0.0]
     found = simulate_with_native_contact(system, start, [0.0, span])
     assert found.at_end[:2] == pytest.approx([offset - distance, 0.0], abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("system", "state"), [(FIG5, np.array(SLIPPING_PIN)), (DISC, np.array(SLIPPING_DISC))]
-)
-def test_no_user_function_takes_part_in_the_friction(system, state):
-    friction = partial(add_native_friction, reach=10.0)
-    model = build_model(system, state, regularisation=1e-7, friction=friction)
-    mbs = model.mbs
-    objects = [mbs.GetObject(i) for i in range(mbs.systemData.NumberOfObjects())]
-    assert sum("trianglePoints" in item for item in objects) == (1 if system is FIG5 else 6)
-    for item in objects:
-        assert not any(value for name, value in item.items() if "UserFunction" in name), item

@@ -15,7 +15,7 @@ from exudyn_models import add_ring_friction, simulate, simulate_fixed_step, simu
 from exudyn_models.paper.alternating_solvers import Friction
 from exudyn_models.paper.creep import RegularisedContact
 from reference_model import SimulationError
-from reference_model.systems import DiscOnDisc, PinOnDisc
+from reference_model.systems import PinOnDisc
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 STUCK = replace(FIG11, polar_inertia=0.0072, damping=0.1, friction_force=0.09, offset=0.1)
@@ -71,16 +71,14 @@ def test_the_implicit_solver_has_an_error_of_first_order_in_the_tolerance(name):
     assert errors[1] < 1e-4
 
 
-@SLIPS
 @pytest.mark.parametrize(
     ("integrator", "order", "step"),
     [("RK44", 4, 0.1), ("RK67", 6, 0.2), ("GeneralizedAlpha", 2, 0.1), ("TrapezoidalIndex2", 2, 0.1)],
 )
-def test_integrators_converge_at_their_order(name, integrator, order, step):
-    system, start = SLIPPING[name]
-    if isinstance(system, DiscOnDisc):
-        start = [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # slips so fast that U > W throughout and friction is smooth
-    times = [0.0, 100.0 if name == "pin" else 3.0]
+def test_integrators_converge_at_their_order(integrator, order, step):
+    """A study measures the orders for a pin."""
+    system, start = SLIPPING["points"][0], [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # so fast that friction is smooth
+    times = [0.0, 3.0]
     expected = slide(system, start, times).y[:, -1]
     errors = [
         largest(simulate_fixed_step(system, start, times, integrator=integrator, step=h).at_end - expected)
@@ -105,11 +103,11 @@ def test_errors_of_the_built_in_contact_are_below_the_tolerance_and_of_first_ord
     ("name", "engine"), [*((name, simulate) for name in STICKING), ("pin", simulate_with_native_contact)]
 )
 def test_stick_phases_have_errors_of_first_order_in_the_regularisation(name, engine):
-    (system, start), end = STICKING[name], 60.0 if name == "pin" else 12.0
+    (system, start), end = STICKING[name], {"pin": 24.0, "three points": 6.0}.get(name, 12.0)
     exact = reference_model.simulate(system, start, [0.0, end], tolerance=1e-11)
     expected = [kind for kind in kinds(exact) if kind != "pivot"]  # pivots at each release are short
     errors = []
-    for tolerance in (1e-7, 1e-8, 1e-9):  # ε is 100 tolerances in units of the motion
+    for tolerance in (1e-7, 1e-8):  # ε is 100 tolerances in units of the motion
         found = engine(system, start, [0.0, end], tolerance=tolerance)
         assert [kind for kind in kinds(found) if kind != "pivot"] == expected
         errors.append([*np.abs(found.stick_times - exact.stick_times), largest(found.at_end - exact.at_end)])
@@ -120,12 +118,11 @@ def test_stick_phases_have_errors_of_first_order_in_the_regularisation(name, eng
     if exact.phases[1].kind == "stick":
         assert errors[-1, 0] < 1e-8
         errors = errors[:, 1:]
-    errors = errors[:, :-1] if name == "pin" else errors  # the pin comes to rest at the same place anyway
-    np.testing.assert_allclose(np.log10(errors[:-1] / errors[1:]), 1.0, atol=0.1, err_msg=str(errors))
-    assert errors[-1].max() < 2e-4
+    np.testing.assert_allclose(np.log10(errors[0] / errors[1]), 1.0, atol=0.1, err_msg=str(errors))
+    assert errors[-1].max() < 2e-5
 
 
-@pytest.mark.parametrize("name", ["pin", "ring", "six points"])
+@pytest.mark.parametrize("name", ["pin", "six points"])
 def test_the_implicit_solver_passes_through_sticking(name):
     system, start = STICKING[name]
     found = simulate(system, start, [0.0, 12.0], tolerance=1e-7, solver="implicit")
@@ -134,16 +131,7 @@ def test_the_implicit_solver_passes_through_sticking(name):
     np.testing.assert_allclose(found.stick_times, exact.stick_times, rtol=0.0, atol=1e-3)
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {},
-        {"damping": 0.2},
-        {"stiffness": 1.0},
-        {"shaft_damping": 0.001},
-        {"contact_points": 6, "stiffness": 1.0},
-    ],
-)
+@pytest.mark.parametrize("change", [{}, {"damping": 0.2}, {"contact_points": 6, "stiffness": 1.0}])
 def test_a_body_thrown_on_a_resting_table_comes_to_permanent_rest_and_never_gains_energy(change):
     ring = replace(TABLE, friction_force=0.3, **change)
     found = simulate(ring, THROWN, np.linspace(0.0, 6.0, 601))
@@ -155,47 +143,21 @@ def test_a_body_thrown_on_a_resting_table_comes_to_permanent_rest_and_never_gain
     assert abs(found.at_end[5]) * ring.contact_radius < found.solution.regularisation
 
 
-def test_a_thrown_ring_stops_sliding_and_spinning_together_in_the_ratio_one():
-    # Farkas, Bartels, Unger, Wolf 2003: for J = mR² the ratio of sliding to rim speed tends to 1.
-    found = simulate(TABLE, THROWN, [0.0, 10.0])
-    stop = found.phases[1].start
-    assert kinds(found) == ["slip", "stick"]
-    times = np.concatenate(([0.0], stop - np.array([3.0, 1.0, 0.3, 0.1]), [10.0]))
-    _, _, _, vx, vy, spin = simulate(TABLE, THROWN, times).states.T
-    ratios = np.hypot(vx, vy) / (TABLE.contact_radius * np.abs(spin))
-    away = np.abs(ratios[:-1] - 1.0)
-    assert np.all(np.diff(away[away > 1e-9]) < 0.0), ratios  # the last ones equal 1 to within the tolerance
-    assert away[0] > 0.3
-    assert away[-1] < 1e-9
-
-
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
-def test_a_disc_on_points_pivots_about_one_of_them_before_it_rests(tolerance):
-    ring = replace(TABLE, contact_points=6)
-    exact = reference_model.simulate(ring, THROWN, [0.0, 10.0], tolerance=1e-11)
-    found = simulate(ring, THROWN, [0.0, 10.0], tolerance=tolerance)
-    assert kinds(found) == kinds(exact) == ["slip", "pivot", "stick"]
-    epsilon = found.solution.regularisation
-    for one, other in zip(found.phases[1:], exact.phases[1:], strict=True):
-        assert one.start == pytest.approx(other.start, abs=epsilon)
-    np.testing.assert_allclose(found.at_end[:3], exact.at_end[:3], rtol=0.0, atol=epsilon)
-
-
-def test_long_pivots_have_errors_of_first_order_in_the_regularisation():
+def test_a_long_pivot_has_errors_of_first_order_in_the_regularisation():
     # Fig. 11's disc on six points, near the centre of its modulated motion.
     disc, start = replace(FIG11, contact_points=6), [0.01, 0.0, 0.0, 0.0, 0.01, 1.45]
-    exact = reference_model.simulate(disc, start, [0.0, 100.0], tolerance=1e-11)
-    assert kinds(exact).count("pivot") == 2
+    exact = reference_model.simulate(disc, start, [0.0, 20.0], tolerance=1e-11)
+    assert kinds(exact) == ["slip", "pivot", "slip"]
     errors = []
     for tolerance in (1e-7, 1e-8):
-        found = simulate(disc, start, [0.0, 100.0], tolerance=tolerance)
+        found = simulate(disc, start, [0.0, 20.0], tolerance=tolerance)
         assert kinds(found) == kinds(exact)
         errors.append(largest(found.at_end - exact.at_end))
     assert np.log10(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.1), errors
     assert errors[-1] < 2e-6
 
 
-@pytest.mark.parametrize("change", [{}, {"stiffness": 0.0}, {"shaft_damping": 0.0}, FREE])
+@pytest.mark.parametrize("change", [{}, FREE])
 @pytest.mark.parametrize("name", ["pin", "ring"])
 @SOLVERS
 def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, change, solver):
@@ -217,8 +179,8 @@ def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, chan
     assert kinds(found) == ["slip"]
 
 
-@pytest.mark.parametrize("name", ["pin", "ring", "six points"])
-def test_a_mirrored_motion_a_turned_one_and_another_clock_change_nothing_else(name):
+@pytest.mark.parametrize("name", ["pin", "six points"])
+def test_a_mirrored_or_turned_motion_is_otherwise_the_same(name):
     (system, start), delays = STICKING[name], np.linspace(0.0, 6.0, 13)
     expected = simulate(system, start, delays, tolerance=1e-8)
     mirror = np.array([1.0, -1.0, 1.0, -1.0] if name == "pin" else [1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
@@ -242,11 +204,11 @@ def test_the_clock_at_the_start_does_not_matter(engine, first):
     # At a time of 1e6 s, one second has a rounding error of 1e-10.
     assert moved.states == pytest.approx(expected.states, abs=1e-9)
     assert kinds(moved) == kinds(expected)
-    ends = np.array([(phase.start, phase.end) for phase in moved.phases])
-    assert (ends[0, 0], ends[-1, 1]) == (first, first + 3.0)
-    assert ends - first == pytest.approx(
-        np.array([(one.start, one.end) for one in expected.phases]), abs=1e-9
+    ends, expected_ends = (
+        np.array([(one.start, one.end) for one in run.phases]) for run in (moved, expected)
     )
+    assert (ends[0, 0], ends[-1, 1]) == (first, first + 3.0)
+    assert ends - first == pytest.approx(expected_ends, abs=1e-9)
 
 
 def test_a_coordinate_that_passes_minus_one_does_not_stop_the_solver():
@@ -254,12 +216,12 @@ def test_a_coordinate_that_passes_minus_one_does_not_stop_the_solver():
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5)
     start = [1.0, 0.0, 0.0, 1.0]  # inside the whirl of radius 1.2, so x and y pass −1 in every turn
     exact = reference_model.simulate(pin, start, [0.0, 50.0], tolerance=1e-13).at_end
-    for tolerance in (1e-10, 1e-11, 1e-12):
+    for tolerance in (1e-10, 1e-12):
         assert simulate(pin, start, [0.0, 50.0], tolerance=tolerance).at_end == pytest.approx(exact, abs=1e-9)
 
 
 @pytest.mark.parametrize("engine", [simulate, simulate_with_native_contact])
-def test_a_pin_that_starts_stuck_stays_so_until_friction_can_not_hold_it(engine):
+def test_a_pin_that_starts_in_stick_stays_there_until_its_release(engine):
     start = [-0.053, -0.015, 0.0225, -0.0795]  # a change of units and back would round it
     exact, found = (
         simulator(PIN, start, [0.0, 1e-3, 3.0]) for simulator in (reference_model.simulate, engine)
@@ -287,10 +249,10 @@ def test_states_do_not_depend_on_other_requested_times_and_are_as_accurate_as_at
     coarse, fine = (simulate(system, start, np.linspace(0.0, 12.0, count)) for count in (13, 1201))
     np.testing.assert_array_equal(fine.states[::100], coarse.states)
     assert fine.solution.evaluations == coarse.solution.evaluations
-    apart = np.array([simulate(system, start, [0.0, t]).at_end for t in range(1, 9)])
-    np.testing.assert_allclose(coarse.states[1:5], apart[:4], rtol=0.0, atol=1e-11)
+    apart = np.array([simulate(system, start, [0.0, t]).at_end for t in (2, 4, 6, 8)])
+    np.testing.assert_allclose(coarse.states[[2, 4]], apart[:2], rtol=0.0, atol=1e-11)
     # Steps in stick divide the remaining time, which changes the result by a few per cent of ε.
-    np.testing.assert_allclose(coarse.states[5:9], apart[4:], rtol=0.0, atol=5e-9)
+    np.testing.assert_allclose(coarse.states[[6, 8]], apart[2:], rtol=0.0, atol=5e-9)
     times = [0.0, 0.05, 0.1, 0.15, 0.2]
     system, start = SLIPPING["pin"]
     found = simulate_fixed_step(system, start, times, integrator="RK67", step=0.1).states
@@ -336,9 +298,9 @@ def test_a_force_of_nan_raises_an_error_with_its_time(solver):
     assert time == pytest.approx(crossing, abs=0.1)
 
 
-@SOLVERS
 @pytest.mark.parametrize(
-    ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, SimulationError)]
+    ("solver", "raised", "seen"),
+    [("explicit", KeyboardInterrupt, KeyboardInterrupt), ("implicit", ZeroDivisionError, SimulationError)],
 )
 def test_an_error_inside_a_run_is_raised(solver, raised, seen):
     def interrupted(force):

@@ -3,7 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import drive, items, new_model, planar_body, rate_of, settings_of
+from free_bodies import drive, items, new_model, rate_of, settings_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
 
@@ -25,21 +25,15 @@ def pair(radius, speeds, load=0.0, regularisation=None):
     """Return a model of two rotors on parallel axes, a load on the master, both nodes and the heat sensor."""
     mbs = new_model()
     nodes = rotor_at(mbs, MASTER, speeds[0], 0.0), rotor_at(mbs, DISC, speeds[1], DISTANCE)
-    contact = add_ring_friction(
-        mbs,
-        *nodes,
-        contact_radius=radius,
-        friction_coefficient=COEFFICIENT,
-        normal_load=LOAD,
-        regularisation=regularisation,
-    )
+    law = {"friction_coefficient": COEFFICIENT, "normal_load": LOAD, "regularisation": regularisation}
+    contact = add_ring_friction(mbs, *nodes, contact_radius=radius, **law)
     drive(mbs, nodes[0], load)
     return mbs, nodes, contact.add_sensor("heat")
 
 
 def test_a_pin_on_a_parallel_axis_stops_the_master_and_not_its_own_rotor():
     mbs, (master, disc), heat = pair(0.0, (10.0, 3.0))
-    stops = solve_dynamic(mbs, settings_of(1.0, 1000), TRAPEZOIDAL)
+    stops = solve_dynamic(mbs, settings_of(1.0, 500), TRAPEZOIDAL)
     assert [stop.time for stop in stops] == pytest.approx([MASTER * 10.0 / HELD], abs=1e-9)
     assert rate_of(mbs, master) == pytest.approx(0.0, abs=1e-12)
     assert rate_of(mbs, disc) == pytest.approx(3.0, rel=1e-12)
@@ -48,7 +42,7 @@ def test_a_pin_on_a_parallel_axis_stops_the_master_and_not_its_own_rotor():
 
 def test_it_holds_until_the_load_exceeds_the_moment_of_its_force():
     mbs, (master, disc), _ = pair(0.0, (0.0, 3.0), lambda t: 1.5 * HELD * t)
-    releases = solve_dynamic(mbs, settings_of(1.0, 997), TRAPEZOIDAL)
+    releases = solve_dynamic(mbs, settings_of(1.0, 499), TRAPEZOIDAL)
     assert [release.time for release in releases] == pytest.approx([2.0 / 3.0], abs=1e-6)
     # The integral of 1.5·HELD·t − HELD from the release to the end, over the inertia:
     assert rate_of(mbs, master) == pytest.approx(0.75 * HELD / MASTER * (1.0 / 3.0) ** 2, rel=1e-4)
@@ -57,7 +51,7 @@ def test_it_holds_until_the_load_exceeds_the_moment_of_its_force():
 
 def test_a_ring_stops_both_rotors_at_the_time_of_the_regularised_law():
     mbs, nodes, heat = pair(0.1, (10.0, 3.0))
-    (stop,) = solve_dynamic(mbs, settings_of(1.0, 1000), TRAPEZOIDAL)
+    (stop,) = solve_dynamic(mbs, settings_of(1.0, 500), TRAPEZOIDAL)
     assert [rate_of(mbs, node) for node in nodes] == pytest.approx([0.0, 0.0], abs=1e-12)
     turned = MASTER * 10.0**2 / 2.0 + DISC * 3.0**2 / 2.0
     assert float(mbs.GetSensorValues(heat)) == pytest.approx(turned, rel=1e-5)
@@ -65,17 +59,6 @@ def test_a_ring_stops_both_rotors_at_the_time_of_the_regularised_law():
     speeds = []
     for regularisation in (None, 1e-6):
         mbs, nodes, _ = pair(0.1, (10.0, 3.0), regularisation=regularisation)
-        solve_dynamic(mbs, settings_of(before, 1000), TRAPEZOIDAL)
+        solve_dynamic(mbs, settings_of(before, 500), TRAPEZOIDAL)
         speeds.append([rate_of(mbs, node) for node in nodes])
     np.testing.assert_allclose(*speeds, rtol=1e-6)
-
-
-@pytest.mark.parametrize("spin", [5.0, -5.0])
-def test_a_pin_that_stops_on_the_ground_leaves_its_body_spinning(spin):
-    mbs = new_model()
-    body = planar_body(mbs, 1.0, 0.02, [0.0, 0.0, 0.0], [0.4, 0.1, spin])
-    add_ring_friction(mbs, None, body, contact_radius=0.0, friction_coefficient=0.2, normal_load=10.0)
-    (stop,) = solve_dynamic(mbs, settings_of(0.5, 500), TRAPEZOIDAL)
-    assert stop.time == pytest.approx(np.hypot(0.4, 0.1) / 2.0, abs=1e-9)
-    velocities = mbs.systemData.GetODE2Coordinates_t()
-    np.testing.assert_allclose(velocities, [0.0, 0.0, spin], rtol=1e-12, atol=1e-12)

@@ -11,7 +11,7 @@ from reference_model import PinOnDisc
 SOLVERS = exu.DynamicSolverType
 
 INERTIA, SPEED, MOMENT, UNTIL, CAPACITY = 1.0, 100.0, 48.0, 1.0, 100.0
-STEPS = np.unique(np.geomspace(500, 4000, 5).round().astype(int))
+STEPS = 500, 1414
 
 
 def brake_next_to_a_clutch_that_sticks_and_slips(steps, solver, breaks):
@@ -34,7 +34,7 @@ def test_heat_and_temperature_are_exact_if_steps_are_repeated(solver, breaks):
     # Under a constant moment ω = ω0 − M·t/J, and all lost kinetic energy becomes heat.
     speed = SPEED - MOMENT * UNTIL / INERTIA
     heat = INERTIA * (SPEED**2 - speed**2) / 2.0
-    for steps in STEPS[::2] if breaks else STEPS:
+    for steps in STEPS:
         found = brake_next_to_a_clutch_that_sticks_and_slips(steps, solver, breaks)
         np.testing.assert_allclose(found, [speed, heat, heat / CAPACITY], rtol=0.0, atol=1e-6)
 
@@ -45,7 +45,7 @@ def test_generalised_alpha_with_rejected_steps_is_of_second_order_for_a_pin_too(
         simulate_fixed_step(
             pin,
             [0.1, 0.0, 0.03, 0.0],
-            np.linspace(0.0, 40.0, 41),
+            [0.0, 10.0, 20.0],
             integrator="GeneralizedAlpha",
             step=step,
             regularisation=1e-4,

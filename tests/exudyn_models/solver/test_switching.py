@@ -6,7 +6,7 @@ import math
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import ball, drive, new_model, rotations, rotor, settings_of
+from free_bodies import ball, drive, new_model, rate_of, rotations, rotor, settings_of
 from free_bodies import changes_of as run
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
@@ -31,23 +31,14 @@ def angle(mbs):
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)
-@pytest.mark.parametrize("step", [1e-3, 1e-2])
-@pytest.mark.parametrize("share", [0.5, 0.9, 0.99, 0.999])
+@pytest.mark.parametrize(("step", "share"), [(1e-3, 0.5), (1e-2, 0.999)])
 def test_a_brake_on_a_slope_stops_at_the_exact_time_and_holds(solver, step, share):
     load = share * RATIO * SLIDING
-    for speed in np.linspace(0.3, 5.0, 7):
+    for speed in np.linspace(0.3, 5.0, 5):
         mbs, friction = braked(speed, lambda t: -load)
         stops = speed * INERTIA / (SLIDING + load)
         assert run(mbs, 0.3, step, solver) == [(pytest.approx(stops, abs=1e-12), int(friction.item), 1, 0)]
         assert angle(mbs) == pytest.approx(speed * stops / 2.0, abs=1e-9)
-
-
-def test_nothing_creeps_within_an_hour():
-    mbs, _ = braked(2.0, lambda t: -0.999 * RATIO * SLIDING)
-    run(mbs, 0.1, 1e-3, updateInitialValues=True)
-    before = angle(mbs)
-    assert run(mbs, 3600.0, 10.0) == []
-    assert abs(angle(mbs) - before) <= 1e-12
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)
@@ -60,7 +51,7 @@ def test_a_growing_load_breaks_the_contact_loose_at_the_static_moment(solver):
 
 
 def coupled_clutches(step, solver=SOLVERS.TrapezoidalIndex2):
-    """Return four rotors in a row; the first one turns under an alternating torque (Modelica's CoupledClutches)."""
+    """Return the times and modes of Modelica's CoupledClutches, three clutches between four rotors in a row."""
     mbs = new_model()
     rotors = [rotor(mbs, 1.0, speed) for speed in (10.0, 0.0, 0.0, 0.0)]
     drive(mbs, rotors[0], lambda t: 10.0 * math.sin(10.0 * math.pi * t))
@@ -74,94 +65,82 @@ def coupled_clutches(step, solver=SOLVERS.TrapezoidalIndex2):
         add_ring_friction(mbs, *pair, normal_load=load, **law)
         for pair, load in zip(itertools.pairwise(rotors), loads, strict=True)
     ]
-    changes = run(mbs, 1.5, step, solver)
-    return [
-        (time, [int(contact.item) for contact in contacts].index(item), *modes)
-        for time, item, *modes in changes
-    ]
+    places = [int(contact.item) for contact in contacts]
+    return [(time, places.index(item), *modes) for time, item, *modes in run(mbs, 1.5, step, solver)]
 
 
-@pytest.mark.parametrize("solver", IMPLICIT)
-def test_switching_times_of_coupled_clutches_converge_with_the_second_order(solver):
-    coarse, fine, finest = (coupled_clutches(step, solver) for step in (2e-3, 1e-3, 2e-4))
-    assert [change[1:] for change in coarse] == [change[1:] for change in finest]
-    assert [change[1:] for change in finest] == [
+def test_switching_times_of_coupled_clutches_converge_with_the_second_order():
+    exact = coupled_clutches(2e-4)
+    assert [change[1:] for change in exact] == [
         (1, 2, -1), (1, -1, 0), (0, -1, 0), (0, 0, -1), (2, 2, -1), (0, -1, 0), (0, 0, -1), (2, -1, 0), (0, -1, 2),
     ]  # fmt: skip
-    errors = [
-        max(abs(change[0] - exact[0]) for change, exact in zip(changes, finest, strict=True))
-        for changes in (coarse, fine)
-    ]
-    assert errors[1] <= 1.5e-5
-    assert 3.5 <= errors[0] / errors[1] <= 4.5
+    for solver in IMPLICIT:
+        errors = []
+        for step in (2e-3, 1e-3):
+            changes = coupled_clutches(step, solver)
+            assert [change[1:] for change in changes] == [change[1:] for change in exact]
+            errors.append(max(abs(one[0] - other[0]) for one, other in zip(changes, exact, strict=True)))
+        assert errors[1] <= 1.5e-5
+        assert 3.5 <= errors[0] / errors[1] <= 4.5
 
 
-@pytest.mark.parametrize("load", [0.0, 5.0, -9.0, 17.0, -17.9])
+@pytest.mark.parametrize("load", [5.0, -17.9])
 def test_two_brakes_on_one_rotor_hold_together(load):
     """The shares of the load are undetermined, but their sum is known."""
     mbs = new_model()
     wheel = rotor(mbs, INERTIA, 3.0)
-    drive(mbs, wheel, lambda t: load + 40.0 * max(0.0, t - 2.0))
+    drive(mbs, wheel, lambda t: load + 40.0 * max(0.0, t - 1.0))
     law = {"contact_radius": 1.0, "friction_coefficient": 1.0}
     brakes = [add_ring_friction(mbs, None, wheel, normal_load=held, **law) for held in (10.0, 8.0)]
-    moments = [brake.add_sensor("transmitted_moment") for brake in brakes]
-    modes = [brake.add_sensor("mode") for brake in brakes]
-    stops, breaks_loose = 3.0 * INERTIA / (18.0 - load), 2.0 + (18.0 - load) / 40.0
-    changes = run(mbs, 3.0, 1e-3)
-    times = [stops, stops, *[breaks_loose] * 2 * (breaks_loose < 3.0)]
-    assert [time for time, *_ in changes] == pytest.approx(times, abs=1e-9)
-    (times, *_), *_ = [mbs.GetSensorStoredData(sensor).T for sensor in moments]
-    rest = (times > stops) & (times < 2.0)
+    moments, modes = ([one.add_sensor(name) for one in brakes] for name in ("transmitted_moment", "mode"))
+    stops, breaks_loose = 3.0 * INERTIA / (18.0 - load), 1.0 + (18.0 - load) / 40.0
+    changes = run(mbs, 2.0, 1e-3)
+    expected = np.repeat([stops, breaks_loose], 2)
+    assert [time for time, *_ in changes] == pytest.approx(expected, abs=1e-9)
+    times = mbs.GetSensorStoredData(moments[0])[:, 0]
+    rest = (times > stops) & (times < 1.0)
     total = sum(mbs.GetSensorStoredData(sensor)[:, 1] for sensor in moments)
     assert total[rest] == pytest.approx(-load, abs=1e-9)
     assert all((mbs.GetSensorStoredData(mode)[rest, 1] == 0.0).all() for mode in modes)
 
 
-@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.filterwarnings("ignore:the energy balance is off")  # the test asserts how far
-def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy(seed):
+def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy():
     """Five rotors and the ground form loops of contacts with static friction, under alternating moments."""
-    rng = np.random.default_rng(seed)
-    mbs = new_model()
+    rng, mbs = np.random.default_rng(0), new_model()
     rotors = [
-        rotor(mbs, inertia, speed)
-        for inertia, speed in zip(rng.uniform(0.5, 2.0, 5), rng.normal(0.0, 3.0, 5), strict=True)
+        rotor(mbs, *pair) for pair in zip(rng.uniform(0.5, 2.0, 5), rng.normal(0.0, 3.0, 5), strict=True)
     ]
-    moments = [(rng.uniform(2.0, 10.0), rng.uniform(2.0, 9.0)) for _ in rotors]
-    for node, (size, rate) in zip(rotors, moments, strict=True):
-        drive(mbs, node, lambda t, size=size, rate=rate: size * math.sin(rate * t))
+    gains = {}
+    for i, (node, size, rate) in enumerate(
+        zip(rotors, rng.uniform(2.0, 10.0, 5), rng.uniform(2.0, 9.0, 5), strict=True)
+    ):
+
+        def moment(t, size=size, rate=rate):
+            return size * math.sin(rate * t)
+
+        drive(mbs, node, moment)
+        gains[f"moment {i}"] = lambda mbs, t, node=node, moment=moment: moment(t) * rate_of(mbs, node)
     pairs = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (None, 2), (None, 0)]
     capacities = rng.uniform(1.0, 6.0, len(pairs))
-    contacts = [
-        add_ring_friction(
-            mbs, None if master is None else rotors[master], rotors[disc],
-            contact_radius=1.0, friction_coefficient=1.0, normal_load=capacity, static_ratio=1.2,
-        )
-        for (master, disc), capacity in zip(pairs, capacities, strict=True)
-    ]  # fmt: skip
-    rate_of = exu.OutputVariableType.Coordinates_t
-    gains = {
-        f"moment {i}": lambda mbs, t, node=node, size=size, rate=rate: (
-            size * math.sin(rate * t) * mbs.GetNodeOutput(node, rate_of)
-        )
-        for i, (node, (size, rate)) in enumerate(zip(rotors, moments, strict=True))
-    }
+    law = {"contact_radius": 1.0, "friction_coefficient": 1.0, "static_ratio": RATIO}
+    contacts = []
+    for pair, capacity in zip(pairs, capacities, strict=True):
+        ends = [None if place is None else rotors[place] for place in pair]
+        contacts.append(add_ring_friction(mbs, *ends, normal_load=capacity, **law))
     losses = {f"contact {i}": contact.power for i, contact in enumerate(contacts)}
     balance = add_energy_balance(mbs, gains=gains, losses=losses)
-    sensors = {
-        name: [contact.add_sensor(name) for contact in contacts]
-        for name in ("mode", "transmitted_moment", "relative_spin")
-    }
-    changes = run(mbs, 2.0, 1e-3)
-    assert len(changes) > 10
+    names = "mode", "transmitted_moment", "relative_spin"
+    sensors = [[contact.add_sensor(name) for contact in contacts] for name in names]
+    assert len(run(mbs, 2.0, 1e-3)) > 10
     modes, transmitted, spins = (
-        np.array([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in sensors[name]]) for name in sensors
+        np.array([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in of_all]) for of_all in sensors
     )
     locked = modes == 0.0
     assert locked.any()
     assert not locked.all()
     assert np.abs(spins[locked]).max() <= 1e-12
-    assert (np.abs(transmitted) <= 1.2 * capacities[:, None] * (1.0 + 1e-9)).all()
+    assert (np.abs(transmitted) <= RATIO * capacities[:, None] * (1.0 + 1e-9)).all()
     sliding = -np.sign(spins) * capacities[:, None]
     moving = ~locked & (np.abs(spins) > 1e-9)
     assert transmitted[moving] == pytest.approx(sliding[moving], rel=1e-12)
@@ -176,30 +155,28 @@ def two_discs(kind, solver, step):
     ground = mbs.CreateGround()
     bodies = []
     for scale, speed in ((3.0, 0.0), (1.0, 4.0)):
-        place = [0.3, -0.2, 0.1 * scale]
-        turned = rotations.RotationMatrixZ(0.7)
-        body = ball(
-            mbs, getattr(exu.NodeType, kind), 2.0 * scale, scale, place, [0.0] * 3, [0.0, 0.0, speed], turned
-        )
+        place, turned = [0.3, -0.2, 0.1 * scale], rotations.RotationMatrixZ(0.7)
+        kind_of_node = getattr(exu.NodeType, kind)
+        body = ball(mbs, kind_of_node, 2.0 * scale, scale, place, [0.0] * 3, [0.0, 0.0, speed], turned)
         mbs.CreateRevoluteJoint(itemNumbers=[ground, body], position=place, axis=[0, 0, 1])
         bodies.append(body)
-    law = {"contact_radius": 0.5, "friction_coefficient": 0.4, "normal_load": 10.0}
+    law = {"contact_radius": 0.5, "friction_coefficient": 0.4, "normal_load": 50.0}
     add_ring_friction(mbs, *bodies, **law)
-    ((time, _, *modes),) = run(mbs, 1.6, step, solver)
+    ((time, _, *modes),) = run(mbs, 0.32, step, solver)
     assert modes == [1, 0]
     spins = [mbs.GetObjectOutputBody(body, exu.OutputVariableType.AngularVelocity)[2] for body in bodies]
-    return time - 1.5, spins
+    return time - 0.3, spins
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 @pytest.mark.parametrize("kind", ["RotationRotationVector", "RotationRxyz", "RotationEulerParameters"])
 def test_bodies_in_space_that_joints_hold_on_one_axis_stick_exactly(kind, solver):
-    (coarse, _), (fine, spins) = (two_discs(kind, solver, step) for step in (2e-3, 1e-3))
+    late, spins = two_discs(kind, solver, 1e-3)
     if kind == "RotationEulerParameters":  # their coordinates are curved under a constant deceleration
-        assert 3.8 <= coarse / fine <= 4.2
+        assert 3.8 <= two_discs(kind, solver, 2e-3)[0] / late <= 4.2
     else:
-        assert (coarse, fine) == pytest.approx((0.0, 0.0), abs=1e-10)
-    assert spins == pytest.approx([1.0, 1.0], abs=2.0 * abs(fine) + 1e-10)
+        assert late == pytest.approx(0.0, abs=1e-10)
+    assert spins == pytest.approx([1.0, 1.0], abs=10.0 * abs(late) + 1e-10)
     assert abs(spins[1] - spins[0]) <= 1e-12
 
 
@@ -236,20 +213,17 @@ def test_sensors_and_the_solution_file_show_the_kink_and_keep_their_times(tmp_pa
 def test_runs_can_go_on_and_loads_can_change_between_them():
     mbs, friction = braked(2.0, lambda t: 10.0)
     mbs.Assemble()
-    for start in (0.0, 1.0):
-        options = {"updateInitialValues": True}
-        changes = solve_dynamic(
-            mbs, settings_of(start + 1.0, 100, start), SOLVERS.TrapezoidalIndex2, **options
-        )
-        assert len(changes) == 1 - start
+
+    def run_from(start, goes_on=True):
+        return solve_dynamic(mbs, settings_of(start + 1.0, 100, start), SOLVERS.TrapezoidalIndex2, goes_on)
+
+    assert len(run_from(0.0)) == 1
+    assert run_from(1.0) == []
     friction.change(normal_load=200.0)
-    assert (
-        solve_dynamic(mbs, settings_of(3.0, 100, 2.0), SOLVERS.TrapezoidalIndex2, updateInitialValues=True)
-        == []
-    )
+    assert run_from(2.0) == []
     speed = mbs.systemData.GetODE2Coordinates_t()[0]
     assert speed == pytest.approx((10.0 - SLIDING / 4.0) / INERTIA, rel=1e-12)
-    solve_dynamic(mbs, settings_of(4.0, 100, 3.0), SOLVERS.TrapezoidalIndex2)
+    run_from(3.0, False)
     with pytest.raises(exu.ExudynError, match=r"needs exudyn_models\.solve_dynamic"):
         mbs.SolveDynamic(settings_of(4.0, 100, 3.0), SOLVERS.TrapezoidalIndex2)
     assert mbs.systemData.GetODE2Coordinates_t(exu.ConfigurationType.Initial)[0] == speed
@@ -265,10 +239,3 @@ def test_changes_at_a_break_are_among_the_changes():
         (pytest.approx(0.2, abs=1e-9), item, 2, 1),
         (pytest.approx(0.2 + 2.0 * INERTIA / SLIDING, abs=1e-9), item, 1, 0),
     ]
-
-
-def test_explicit_solvers_are_refused():
-    mbs, _ = braked(2.0, lambda t: 0.0)
-    mbs.Assemble()
-    with pytest.raises(ValueError, match="solverType = RK44: explicit solvers ignore constraints"):
-        solve_dynamic(mbs, settings_of(1.0, 10), SOLVERS.RK44)
