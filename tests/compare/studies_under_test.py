@@ -101,7 +101,7 @@ If an engine may hold a body at rest, ε is small enough to limit creep.
 
 GROSS = {
     "friction along the slip": made(friction=-1.0, **COARSE),
-    "a box for the cone": made(sides=4, circumscribed=True, **FINER),
+    "a box for the cone": made(sides=4, **FINER),
     "half the damping": altered(damping=0.5),
     "half the friction": altered(friction_force=0.5),
 }
