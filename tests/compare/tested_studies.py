@@ -137,7 +137,8 @@ SIMULATED_MAP = Tested(STUDY["simulated-map"])
 
 CONTACT_LAWS = Tested(
     STUDY["contact-laws"],
-    few=few({"ratios": (0.3, 0.8, 1.25)}, "on_ring", "on_six_points"),
+    few=few({"ratios": (0.3, 0.8, 1.25)}, "on_ring", "on_six_points")
+    | few({"numbers": (6,)}, "error_of_points", "place_of_points_error"),
     small={"friction 0.01 % off": altered(friction_force=1.0001)},
 )
 
@@ -282,7 +283,8 @@ MOTION = ("moves", "switches_on_time", "implicit", "momentum")
 
 COUPLED_CLUTCHES = Tested(
     STUDY["coupled-clutches"],
-    sound=("exudyn",),
+    sound=("exudyn", "exudyn-native"),
+    parts={"exudyn-native": ("moves",)},
     gross={
         "friction and second inertia 20 % too small": Patched(
             wrong.coupled_off(COEFFICIENT=0.8, INERTIAS=np.array([1, 0.8, 1, 1])), only=MOTION
@@ -302,8 +304,8 @@ COUPLED_CLUTCHES = Tested(
 TRAJECTORIES = Tested(
     STUDY["trajectories"],
     sound=("reference", "intact"),
-    gross=GROSS
-    | {name: fault(name) for name in ("no-release", "angle-wrapped", "velocities-by-differences")},
+    gross={name: GROSS[name] for name in ("friction along the slip", "a box for the cone")}
+    | {name: fault(name) for name in ("angle-wrapped", "velocities-by-differences")},
     small={
         "friction off by 1e-6": altered(friction_force=1.0 + 1e-6),
         **{name: fault(name) for name in ("output-late", "release-late-by-1e-3")},

@@ -3,6 +3,7 @@
 import functools
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -267,7 +268,7 @@ def test_a_regularisation_that_falls_with_the_step_is_not_wrong():
 
 def test_a_lag_of_one_step_is_reported_but_is_not_wrong():
     row, said = sentences(engine("previous", lagging=True))
-    assert "Friction lags the slip by 1.0 steps." in said or "0.9" in said.split("slip by ")[1]
+    assert re.search(r"Friction lags the slip by (1\.0|0\.9\d*) steps\.", said)
     assert not row.wrong
 
 
