@@ -1,7 +1,7 @@
 """Catalogue of sound engines, and of variants with one typical mistake of users or developers each.
 
-A mistake is as small as the claims can detect: a friction force off by a millionth stands for one of the wrong sign,
-which every claim must detect in ``tested_studies``.
+If a term can be wrong by any amount, a small error stands for all: friction off by a millionth for friction along the
+slip. ``tested_studies`` contains the gross faults that every claim must detect.
 """
 
 import functools
