@@ -137,8 +137,7 @@ SIMULATED_MAP = Tested(STUDY["simulated-map"])
 
 CONTACT_LAWS = Tested(
     STUDY["contact-laws"],
-    few=few({"ratios": (0.3, 0.8, 1.25)}, "on_ring", "on_six_points")
-    | few({"numbers": (6,)}, "error_of_points", "place_of_points_error"),
+    few=few({"ratios": (0.3, 0.8, 1.25)}, "on_ring", "on_six_points"),
     small={"friction 0.01 % off": altered(friction_force=1.0001)},
 )
 
