@@ -111,6 +111,9 @@ NAMED_BY_FORCES = {
     engine("sleeps", slowest=0.01): f"{MOTION}a body that starts at 0.0081 m/s or less stops at once.",
     engine("spring pushes", spring=-1.0): f"{MOTION}the spring force is -1 times the right one.",
     engine("no spring", spring=0.0): f"{MOTION}the spring force is missing.",
+    replace(mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}), kinds=("pin",)): (
+        "Wrong mass: the mass is 0.0010 % too large, because all forces act alike."
+    ),
 }
 
 NAMED_BY_MORE = {
@@ -118,12 +121,11 @@ NAMED_BY_MORE = {
     engine("stuck", static=1e9): f"{LAW}a block at rest is not released by 32 times the limit μN.",
     engine("late", late=2e-2): f"{LAW}a block is released 20 ms late.",
     engine("fixed", smooth=1e-2): f"{LAW}friction is regularised as min(v/ε, 1) with ε = 0.010 m/s",
+    replace(
+        made("lever", moment=0.99), kinds=("ring", "points")
+    ): f"{MOTION}the friction moment on a disc is 1.0 % too small.",
     mistaken("drag", lambda system: {"damping": system.damping + 0.05 * system.mass}): (
         "Hidden damping: every body loses 4.9 to 5.0 % of its speed per second. Examined, "
-    ),
-    made("lever", moment=0.99): f"{MOTION}the friction moment on a disc is 1.0 % too small.",
-    replace(mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}), kinds=("pin",)): (
-        "Wrong mass: the mass is 0.0010 % too large, because all forces act alike."
     ),
 }
 
