@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from compare.cli import app as cli
 from compare.diagnosis import friction_benchmark
@@ -85,8 +86,9 @@ def test_a_box_fails_wherever_slip_is_oblique():
     assert failures(box=True) == names - {"heading, 45°"}
 
 
-def test_friction_two_percent_too_strong_holds_a_block_that_should_slide():
-    assert {f"ramp, μ = {mu}, tan θ = 1.01 μ" for mu in (0.1, 0.3, 0.6)} <= failures(strength=1.02)
+@pytest.mark.parametrize(("strength", "slope"), [(1.02, 1.01), (0.9, 0.99)])
+def test_friction_of_wrong_strength_holds_or_releases_a_block_on_a_slope(strength, slope):
+    assert {f"ramp, μ = {mu}, tan θ = {slope} μ" for mu in (0.1, 0.3, 0.6)} <= failures(strength=strength)
 
 
 def test_the_file_runs_alone_and_prints_json(tmp_path):

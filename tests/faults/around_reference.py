@@ -24,10 +24,6 @@ def in_single_precision(trajectory):
     return trajectory.states.astype(np.float32).astype(float)
 
 
-def one_sample_late(trajectory):
-    return np.vstack((trajectory.states[:1], trajectory.states[:-1]))
-
-
 def with_angle_wrapped(trajectory):
     """Return angles between −π and π."""
     states = trajectory.states.copy()

@@ -25,7 +25,7 @@ def slip_of(y, numbers, make):
 @compiled
 def support(t, z, v, numbers, make):
     """Return the force of springs, stop and dampers."""
-    anchor = numbers.offset * make.anchor
+    anchor = complex(numbers.offset, 0.0)
     if make.anchor_turns:
         anchor *= complex(math.cos(numbers.omega * t), math.sin(numbers.omega * t))
     deflection = z - anchor

@@ -9,15 +9,13 @@ from faults.jit import compiled
 def on_polygon(force, make):
     """Return the point of the polygon nearest to ``force``."""
     half = math.pi / make.sides
-    apothem = 1.0 if make.circumscribed else math.cos(half)
-    angle = math.atan2(force.imag, force.real) - make.first_side
-    middle = make.first_side + 2.0 * half * round(angle / (2.0 * half))
+    middle = 2.0 * half * round(math.atan2(force.imag, force.real) / (2.0 * half))
     along = complex(math.cos(middle), math.sin(middle))
     rotated = force * along.conjugate()
-    if rotated.real <= apothem:
+    if rotated.real <= 1.0:
         return force
-    end = apothem * math.tan(half)
-    return complex(apothem, min(max(rotated.imag, -end), end)) * along
+    end = math.tan(half)
+    return complex(1.0, min(max(rotated.imag, -end), end)) * along
 
 
 @compiled
@@ -65,15 +63,15 @@ def contact(slip, spin, angle, width, strength, numbers, make):
     if numbers.points > 0:
         force, moment, fastest = 0j, 0.0, 0.0
         for i in range(numbers.points):
-            alpha = make.points_turn * angle + 2.0 * math.pi * i / numbers.points
+            alpha = angle + 2.0 * math.pi * i / numbers.points
             arm = radius * complex(math.cos(alpha), math.sin(alpha))
-            velocity = slip + make.spin_in_slip * 1j * spin * arm
+            velocity = slip + 1j * spin * arm
             friction = at_point(velocity, width, strength, make) / numbers.points
             force += friction
             moment += (arm.conjugate() * friction).imag
             fastest = max(fastest, abs(velocity))
         return force, moment, fastest
-    u, w = abs(slip), make.spin_in_slip * radius * abs(spin)
+    u, w = abs(slip), radius * abs(spin)
     speed, by_slip, by_rim = mean_slip(u, w)
     if make.uncoupled:
         by_slip, by_rim = min(u / width, 1.0), min(w / width, 1.0)

@@ -11,26 +11,20 @@ class Make(NamedTuple):
     """Settings of the engine; each default is right, and any other value is one mistake."""
 
     friction: float = 1.0  # factor of friction; a negative one accelerates the slip
-    slip_width: float = 0.0  # lower limit of ε in m/s, for any tolerance
     creep_speed: float = 0.0  # slip speed in m/s of full friction during stick, if larger than ε
     static_ratio: float = 1.0  # holding force of friction during stick, divided by μN
     release_delay: float = 0.0  # in s
     release_late: float = 0.0  # relative to the duration of stick
     weakening: float = 0.0  # relative loss of the friction force per 1 m/s of slip speed
     stronger_beside: float = 0.0  # relative gain of the friction force at |y| > x
-    sides: int = 0  # of the polygon that replaces the friction circle; 0 for the circle
-    circumscribed: bool = False  # whether the polygon encloses the circle
-    first_side: float = 0.0  # direction in rad of the middle of the polygon's first side
+    sides: int = 0  # of the polygon around the friction circle that replaces it; 0 for the circle
     relative: float = 1.0  # 1 for friction against the relative velocity, 0 against the absolute one
     about_anchor: bool = False  # whether the master disc turns about the point of relaxed springs
-    spin_in_slip: float = 1.0  # factor of the spin in the slip of a contact on a circle
     moment: float = 1.0  # factor of the moment of friction
     moment_of_slip: float = 1.0  # factor of the moment of a ring whose centre slips faster than its rim
     uncoupled: bool = False  # whether friction resists slip and spin of a ring independently
-    points_turn: float = 1.0  # factor of the disc's angle in the angle of its contact points
     points_lag: float = 0.0  # delay in s of the points' directions behind the disc's angle
     damping_on_slip: bool = False  # whether dampers act on the velocity relative to the master disc
-    anchor: complex = 1.0 + 0.0j  # direction of the offset
     anchor_turns: bool = False  # whether the springs turn with the master disc
     stiffer_in_y: float = 0.0  # relative excess of the stiffness in y
     hardening_power: float = 2.0  # exponent of the deflection in the hardening force

@@ -195,7 +195,7 @@ def simulate(system, initial_state, times, *, tolerance=1e-9, make=RIGHT):
     tolerance = checked_tolerance(tolerance)
     numbers = Numbers.of(system)
     # An explicit method cannot resolve the end of slip within a step.
-    epsilon = max(10.0 * tolerance, make.slip_width, make.step * steepest(numbers))
+    epsilon = max(10.0 * tolerance, make.step * steepest(numbers))
     half = len(start) // 2
     unknowns = np.empty((len(times), 2 * half))
     unknowns[0] = start

@@ -1,7 +1,4 @@
-"""Quality of the claims: they catch every fault twice and never fail for a sound engine."""
-
-import itertools
-from dataclasses import replace
+"""Quality of the claims: they catch every fault twice. ``test_every_study`` shows that none fails a sound engine."""
 
 import pytest
 
@@ -10,7 +7,7 @@ from compare.engines import EVERY_KIND, BadTrajectoryError, Engine
 from compare.studies.engines.trajectories import STUDY
 from compare.studies.engines.trajectories.study import NAMES
 from compare.studies.engines.trajectories.theory import ONE_OF_EACH_KIND
-from faults import FAULTS, SOUND
+from faults import FAULTS
 from reference_model.trajectory import SimulationError
 
 OF_ENGINES = [one for one in STUDY.declared if one.of_engine]
@@ -51,12 +48,6 @@ def caught_twice(engine):
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
 def test_two_kinds_of_claims_catch_every_fault(fault):
     assert caught_twice(fault)
-
-
-def test_no_claim_accuses_a_sound_engine():
-    """The engine gets a new name, like a fault, so the test above cannot pass because of a name."""
-    first = itertools.islice(caught(replace(SOUND[1], name="harmless")), len(ONE_OF_EACH_KIND))
-    assert not any(sentences for sentences, _ in first)
 
 
 def test_engine_that_fails_is_caught_by_all_kinds_of_claims():

@@ -1,4 +1,4 @@
-"""The sound plain engine is accurate, and the catalogue of faults is complete."""
+"""The sound plain engine is accurate."""
 
 import functools
 import math
@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from compare.claims.parameters import FIG5, FIG5_STARTS
-from faults import FAULTS, SOUND
+from faults import SOUND
 from faults.equations import carried, rates
 from faults.make import RIGHT as MADE_RIGHT
-from faults.make import Make, Numbers
+from faults.make import Numbers
 from faults.plain import simulate
 from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.plain import on_ring
@@ -30,7 +30,6 @@ POINTS = replace(RING, contact_points=6)
 MOVING = (0.2, 0.1, 0.3, 0.3, 0.1, 2.0)
 MOTIONS = {
     "pin with stick": (FIG5, FIG5_STARTS["whirl"], 12.0),
-    "pin on a stop": (PIN, (0.2, 0.1, 0.3, 0.1), 6.0),
     "ring": (RING, MOVING, 6.0),
     "points": (POINTS, MOVING, 6.0),
     "pin on a fast disc, backwards": (replace(PIN, disc_speed=-4.5), (0.2, 0.1, 0.3, 0.1), 3.0),
@@ -76,29 +75,16 @@ def test_equations_of_the_plain_engine_are_those_of_the_paper(system, start, poi
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
-def test_plain_engine_converges_to_the_reference_with_its_tolerance(name, tolerance):
-    exact = motion(REFERENCE, name, 1e-12)
-    errors = [apart(motion(PLAIN, name, t), exact) for t in (8.0 * tolerance, tolerance)]
-    estimate = apart(motion(PLAIN, name, 8.0 * tolerance), motion(PLAIN, name, tolerance))
-    assert errors[1] <= estimate
+def test_plain_engine_converges_to_the_reference_with_its_tolerance(name):
+    tolerance, exact = 1e-8, motion(REFERENCE, name, 1e-12)
+    coarse, fine = (motion(PLAIN, name, share * tolerance) for share in (8.0, 1.0))
+    error = apart(fine, exact)
+    assert error <= apart(coarse, fine)
     # Stick creeps with 10 tolerances for some seconds, which affects later phases.
-    assert errors[1] < 2e3 * tolerance
+    assert error < 2e3 * tolerance
 
 
 def test_phases_of_the_plain_engine_agree_with_the_reference():
     plain, exact = (motion(engine, "pin with stick", 1e-10) for engine in (PLAIN, REFERENCE))
     assert [phase.kind for phase in plain.phases] == [phase.kind for phase in exact.phases]
     assert plain.stick_times == pytest.approx(exact.stick_times, abs=1e-6)
-
-
-def test_names_of_the_catalogue_are_unique():
-    assert len({fault.name for fault in FAULTS}) == len(FAULTS)
-
-
-def test_every_option_of_the_plain_engine_is_used_by_a_fault():
-    touched = set()
-    for fault in FAULTS:
-        make = getattr(fault.function, "keywords", {}).get("make", MADE_RIGHT)
-        touched |= {name for name in Make._fields if getattr(make, name) != getattr(MADE_RIGHT, name)}
-    assert touched == set(Make._fields)

@@ -17,22 +17,10 @@ def off_by(name, share, system):
     return {name: (1.0 + share) * getattr(system, name)} if hasattr(system, name) else {}
 
 
-def points_of(system):
-    return (system.contact_points or 0) if isinstance(system, DiscOnDisc) else 0
-
-
 def one_point_too_few(system):
     """Return n − 1 points; a disc needs at least 3."""
-    return {"contact_points": points_of(system) - 1} if points_of(system) > 3 else {}
-
-
-def load_not_shared(system):
-    """Return the load multiplied by the number of points."""
-    return {"friction_force": system.friction_force * (points_of(system) or 1)}
-
-
-def disc_backwards(system):
-    return {"disc_speed": -system.disc_speed}
+    points = (system.contact_points or 0) if isinstance(system, DiscOnDisc) else 0
+    return {"contact_points": points - 1} if points > 3 else {}
 
 
 def stronger_at_extremes(system):

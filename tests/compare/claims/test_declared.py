@@ -69,8 +69,11 @@ def test_sentences_are_known_without_measuring():
         "It sticks": "sticks",
     }
     assert study.declared[2].implied_by == "It rests"
-    assert study_of("rests").has_theory is False
-    assert study_of(*ALL).has_theory is True
+    assert (study_of("rests").has_theory, study.has_theory) == (False, True)
+
+
+def repeats(engine, speed):
+    return Measured(predicted=speed, value=speed)
 
 
 def test_a_member_of_a_family_is_implied_by_the_same_member_of_another():
@@ -80,38 +83,45 @@ def test_a_member_of_a_family_is_implied_by_the_same_member_of_another():
     assert study.measure(ENGINE, only=("repeats",)).claims[0].implied_by == "A slow disc whirls"
 
 
-def repeats(engine, speed):
-    return Measured(predicted=speed, value=speed)
+@pytest.mark.parametrize(
+    ("engine", "only", "identities", "not_simulated"),
+    [
+        (ENGINE, (), ["rest/rests", "rest/whirls/slow-disc", "rest/whirls/fast-disc", "rest/sticks"], ""),
+        (replace(ENGINE, name="lame"), (), ["rest/rests", "rest/sticks"], r"lame does not \x1bwhirl"),
+        (
+            replace(ENGINE, contact_only=True),
+            (),
+            ["rest/rests", "rest/sticks"],
+            "",
+        ),  # claims nothing about it
+        (ENGINE, ("sticks", "whirls/fast disc"), ["rest/whirls/fast-disc", "rest/sticks"], ""),
+    ],
+)
+def test_claims_that_the_engine_supports_are_measured(engine, only, identities, not_simulated):
+    found = study_of(*ALL).measure(engine, only=only)
+    assert [claim.identity for claim in found.claims] == identities
+    assert found.not_simulated == not_simulated
 
 
-def test_inserting_a_claim_keeps_the_ids_of_the_others():
-    few, all_of_them = study_of("rests", "sticks"), study_of(*ALL)
-    known = {claim.identity for claim in few.measure(ENGINE).claims}
-    assert known == {"rest/rests", "rest/sticks"}
-    found = {claim.identity for claim in all_of_them.measure(ENGINE).claims}
-    assert found - known == {"rest/whirls/slow-disc", "rest/whirls/fast-disc"}
-
-
-def test_a_duplicate_claim_is_rejected():
+def test_declarations_that_do_not_fit_are_rejected():
     with pytest.raises(ValueError, match="duplicate claim id rest/rests"):
         study_of("rests", "rests")
+    study = study_of()
+    study.claim("It repeats", each={"disc": 1.0})(repeats)
+    with pytest.raises(ValueError, match="no resolution given"):
+        study.measure(ENGINE)
 
 
-def test_an_element_is_named_by_its_place():
-    (claim,) = study_of("rests").measure(ENGINE).claims
+def test_a_claim_has_the_declared_properties_and_names_its_elements():
+    found = study_of("rests").measure(ENGINE, {"rests": {"loads": (1.0, 0.05)}})
+    assert found.data["loads"].tolist() == [1.0, 0.05]
+    (claim,) = found.claims
     assert claim.verdict is Verdict.DIFFERS
     assert worst(claim).name == "μN = 0.05 N, x"
-    assert worst(replace_axes(claim)).name == "no. 3 of 4"
+    assert worst(replace(claim, axes=())).name == "no. 3 of 4"
     assert claim.parameters.keys() >= {"mass", "offset"}
     assert "friction_force" not in claim.parameters
     assert claim.source == "Fig. 5"
-
-
-def replace_axes(claim):
-    values = {name: getattr(claim, name) for name in ("equation", "kind", "engine", "predicted", "measured")}
-    return type(claim)(
-        claim.sentence, **values, budget=claim.budget, parameters=claim.parameters, source=claim.source
-    )
 
 
 @pytest.mark.parametrize(
@@ -127,40 +137,10 @@ def test_names_of_another_shape_are_rejected(names):
         _ = Measured(predicted=np.ones((2, 2)), value=np.ones((2, 2)), **names).axes
 
 
-def test_a_motion_that_an_engine_does_not_support_is_reported_as_missing():
-    found = study_of(*ALL).measure(replace(ENGINE, name="lame"))
-    assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
-    assert found.not_simulated == r"lame does not \x1bwhirl"
-
-
-def test_a_function_may_make_no_claim_about_an_engine():
-    found = study_of(*ALL).measure(replace(ENGINE, contact_only=True))
-    assert not found.not_simulated
-    assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
-
-
-def test_a_subset_of_the_claims_can_be_measured():
-    found = study_of(*ALL).measure(ENGINE, {"rests": {"loads": (1.0, 2.0)}}, only=("rests",))
-    assert [claim.sentence for claim in found.claims] == ["It rests"]
-    assert found.data["loads"].tolist() == [1.0, 2.0]
-
-
 def test_the_theory_has_no_engine():
     (claim,) = study_of(*ALL).measure_theory({"adds_up": {"terms": 4}}).claims
-    assert claim.engine == THEORY
-    assert claim.basis == "algebra"
+    assert (claim.engine, claim.basis) == (THEORY, "algebra")
     assert float(claim.budget.total) == 0.25
-
-
-def test_a_claim_needs_a_resolution():
-    study = study_of()
-    study.claim("It is")(unresolved)
-    with pytest.raises(ValueError, match="no resolution given"):
-        study.measure(ENGINE)
-
-
-def unresolved(engine):
-    return Measured(predicted=1.0, value=1.0)
 
 
 PROSE = """# A title
@@ -200,17 +180,13 @@ def test_prose_is_read(folder):
 
 
 def test_a_study_without_captions_has_one_figure_with_its_own_name_and_title(folder):
-    def beside(**provided):
-        study = Study.beside(str(folder / "claims.py"), "title", words={"range": "any"})
-        study.provides(**provided)
-        return study
-
-    assert beside().figures == {"branches": "A caption."}
-    (folder / "study.md").write_text("# A title\n\nWhat the paper says of {range}.\n", encoding="utf-8")
-    assert beside(figures=dict).figures == {"title": "A title"}
+    (folder / "study.md").write_text("# A title\n\nWhat the paper says.\n", encoding="utf-8")
+    study = Study.beside(str(folder / "claims.py"), "title")
+    assert study.figures == {}
+    study.provides(figures=dict)
+    assert study.figures == {"title": "A title"}
     with pytest.raises(TypeError, match="study title cannot provide movies: expected figures, animations"):
-        beside(movies=dict)
-    assert beside().figures == {}
+        study.provides(movies=dict)
 
 
 def test_prose_without_title_word_or_group_is_rejected(folder):

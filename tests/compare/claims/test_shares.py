@@ -47,10 +47,14 @@ def test_bounds_of_a_grid_contain_the_area_and_converge_with_order_one():
     np.testing.assert_allclose(np.log2(np.divide(widths[:-1], widths[1:])), 1.0, atol=0.1)
 
 
+def test_a_cell_with_different_corners_may_contain_any_share_of_each():
+    assert of_grid(np.array([[WHIRL, WHIRL], [WHIRL, STUCK]], dtype=np.uint8))[STUCK] == (0.25, 0.0, 1.0)
+
+
 def test_an_undecided_corner_leaves_the_area_of_its_cell_open():
     ends = np.full((3, 3), WHIRL, dtype=np.uint8)
     ends[1, 1] = UNDECIDED
     shares = of_grid(ends)
-    assert (shares[WHIRL].low, shares[WHIRL].value, shares[WHIRL].high) == (0.0, 0.75, 1.0)
-    assert (shares[STUCK].low, shares[STUCK].value, shares[STUCK].high) == (0.0, 0.0, 1.0)
+    assert shares[WHIRL] == (0.75, 0.0, 1.0)
+    assert shares[STUCK] == (0.0, 0.0, 1.0)
     assert shares[UNDECIDED].value == 0.25

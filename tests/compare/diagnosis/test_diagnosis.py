@@ -3,6 +3,7 @@
 import functools
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
 from compare.diagnosis.scaling import Scales
-from compare.engines import COARSENING, USUAL_TOLERANCE, BadTrajectoryError, Engine, exudyn, plain, reference
+from compare.engines import BadTrajectoryError, Engine, exudyn, plain, reference
 from reference_model import Trajectory
 
 RIGHT = engine("right")
@@ -53,7 +54,9 @@ def deaf(system, start, times, *, tolerance, step):
 LAW, MOTION = "Not Coulomb friction: ", "Wrong motion: "
 BOX = f"{LAW}friction is a box with a separate limit for each axis"
 
-NAMED = {
+FORCES = ("law", "scales", "support", "repeat")
+
+NAMED_BY_FORCES = {
     engine("box", law=box): f"{BOX}.",
     # √2 times as much in the corners of the box
     engine("rough box", law=lambda impulse: box(impulse) * (1.0 + 1.4e-6 * np.sign(impulse.real))): (
@@ -87,21 +90,14 @@ NAMED = {
         f"{LAW}the coefficient μ falls with the slip speed (Stribeck), from 1.01 to 1 times its value, "
         "as exp(−(v/V)²) with V = 0.050 m/s."
     ),
-    engine("static", static=1.05): f"{LAW}static friction is 5.0 % above sliding friction.",
-    engine("stuck", static=1e9): f"{LAW}a block at rest is not released by 32 times the limit μN.",
-    engine("late", late=2e-2): f"{LAW}a block is released 20 ms late.",
     made("absolute velocity", relative=0.0): f"{LAW}friction ignores the rotation of the master disc.",
     made(
         "opposite rotation", relative=-1.0
     ): f"{LAW}friction assumes that the master disc rotates the other way.",
-    engine("impulse per step", limit=lambda system, speed, step: 1.0 / step): (
-        f"{LAW}friction is limited by an impulse per step, 1.0 s times the limit μN at any step."
-    ),
     engine("impulse per step and axis", step=2e-3, law=box, limit=lambda system, speed, step: 1.0 / step): (
         f"{LAW}friction is limited by an impulse per step, 1.0 s times the limit μN at any step. Its shape is a box"
     ),
     engine("blind", blind=True): f"{LAW}friction ignores slip towards and away from the axis.",
-    engine("fixed", smooth=1e-2): f"{LAW}friction is regularised as min(v/ε, 1) with ε = 0.010 m/s",
     engine(
         "stronger beyond thresholds",
         limit=lambda system, *_: 1.1 if system.mass > 3.0 or abs(system.disc_speed) > 6.0 else 1.0,
@@ -115,14 +111,28 @@ NAMED = {
     engine("sleeps", slowest=0.01): f"{MOTION}a body that starts at 0.0081 m/s or less stops at once.",
     engine("spring pushes", spring=-1.0): f"{MOTION}the spring force is -1 times the right one.",
     engine("no spring", spring=0.0): f"{MOTION}the spring force is missing.",
-    mistaken("drag", lambda system: {"damping": system.damping + 0.05 * system.mass}): (
-        "Hidden damping: every body loses 4.9 to 5.0 % of its speed per second. Examined, "
-    ),
-    made("lever", moment=0.99): f"{MOTION}the friction moment on a disc is 1.0 % too small.",
     replace(mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}), kinds=("pin",)): (
         "Wrong mass: the mass is 0.0010 % too large, because all forces act alike."
     ),
 }
+
+NAMED_BY_MORE = {
+    engine("static", static=1.05): f"{LAW}static friction is 5.0 % above sliding friction.",
+    engine("stuck", static=1e9): f"{LAW}a block at rest is not released by 32 times the limit μN.",
+    engine("late", late=2e-2): f"{LAW}a block is released 20 ms late.",
+    engine("fixed", smooth=1e-2): f"{LAW}friction is regularised as min(v/ε, 1) with ε = 0.010 m/s",
+    replace(
+        made("lever", moment=0.99), kinds=("ring", "points")
+    ): f"{MOTION}the friction moment on a disc is 1.0 % too small.",
+    mistaken("drag", lambda system: {"damping": system.damping + 0.05 * system.mass}): (
+        "Hidden damping: every body loses 4.9 to 5.0 % of its speed per second. Examined, "
+    ),
+}
+
+NAMED = [(*one, FORCES) for one in NAMED_BY_FORCES.items()] + [
+    (*one, PROBES) for one in NAMED_BY_MORE.items()
+]
+"""Engine, beginning of its diagnosis, and the probes: the others only add sentences to a wrong force."""
 
 
 def sentences(engine, chosen=PROBES):
@@ -131,9 +141,9 @@ def sentences(engine, chosen=PROBES):
     return row, " ".join(row.sentences)
 
 
-@pytest.mark.parametrize(("made", "said"), NAMED.items(), ids=[it.name for it in NAMED])
-def test_a_wrong_law_is_named(made, said):
-    row, found = sentences(made)
+@pytest.mark.parametrize(("made", "said", "chosen"), NAMED, ids=[made.name for made, *_ in NAMED])
+def test_a_wrong_law_is_named(made, said, chosen):
+    row, found = sentences(made, chosen)
     assert found.startswith(said)
     assert row.verdict == WRONG
 
@@ -260,18 +270,8 @@ def test_a_regularisation_that_falls_with_the_step_is_not_wrong():
 
 def test_a_lag_of_one_step_is_reported_but_is_not_wrong():
     row, said = sentences(engine("previous", lagging=True))
-    assert "Friction lags the slip by 1.0 steps." in said or "0.9" in said.split("slip by ")[1]
+    assert re.search(r"Friction lags the slip by (1\.0|0\.9\d*) steps\.", said)
     assert not row.wrong
-
-
-def test_every_engine_runs_at_the_same_number_of_tolerances():
-    stepped, adaptive = tolerances(RIGHT), tolerances(reference)
-    assert len(stepped) == len(adaptive) == RUNGS
-    assert stepped[-1] == adaptive[-1] == USUAL_TOLERANCE
-    assert RIGHT.step_at(stepped[0]) / RIGHT.step_at(stepped[-1]) == pytest.approx(2.0 ** (RUNGS - 1))
-    assert adaptive[0] / adaptive[1] == pytest.approx(COARSENING)
-    fourth = replace(RIGHT, order=4.0)
-    assert fourth.step_at(tolerances(fourth)[0]) == pytest.approx(8.0 * fourth.step)
 
 
 def test_a_converging_motion_has_its_order_and_a_valid_error_estimate():

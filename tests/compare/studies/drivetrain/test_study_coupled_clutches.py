@@ -2,27 +2,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies_under_test import engine_named
-from wrong_parts import coupled_off
 
 import compare.studies.drivetrain.coupled_clutches.study as claims
 from compare.claims.claim import Verdict
 from compare.studies.drivetrain.coupled_clutches.study import STUDY
 from compare.studies.drivetrain.coupled_clutches.theory import published
-
-NATIVE = replace(engine_named("exudyn-native"), contact_only=False)
-
-
-@pytest.mark.parametrize(
-    ("fault", "verdict"),
-    [(lambda patch: None, Verdict.AGREES), (coupled_off(COEFFICIENT=1.005), Verdict.DIFFERS)],
-)
-def test_only_a_right_built_in_connector_agrees(fault, verdict):
-    engine = replace(NATIVE, name=f"bristles {id(fault)}")  # results are cached
-    with pytest.MonkeyPatch.context() as patch:
-        fault(patch)
-        (claim,) = STUDY.measure(engine, {}, ("moves",)).claims
-    assert claim.verdict is verdict
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,9 @@
 from dataclasses import replace
 
-from studies_under_test import (
-    engine_named,
-)
+from studies_under_test import engine_named
 
 from compare.studies.engines import power_balance as study
-from compare.studies.engines.power_balance import (
-    motions_of_the_pin,
-)
+from compare.studies.engines.power_balance import motions_of_the_pin
 
 _, _, _, STICKS, *_ = motions_of_the_pin()
 

