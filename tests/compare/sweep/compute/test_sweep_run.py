@@ -120,6 +120,8 @@ def test_the_plain_reference_detects_a_wrong_kernel(tmp_path, monkeypatch):
         }
 
     monkeypatch.setattr("compare.sweep.compute.work.compute", wrong)
+    monkeypatch.setattr("compare.sweep.compute.work.DOUBLINGS", 0)
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
     store = swept(tmp_path / "s", replace(RANDOM, duration=40.0), 13)
     difference = store.get("check")["difference"].values
     np.testing.assert_allclose(difference, np.tile([0.0, 0.0, 0.0, 0.01], (len(difference), 1)), atol=1e-6)
