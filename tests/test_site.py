@@ -74,7 +74,8 @@ def test_the_pages_made_from_the_program_contain_the_help_and_the_citation(gathe
 
 def test_names_of_claims_lead_to_the_report(site, tmp_path, monkeypatch):
     pages = site["pages_of_program"]
-    claims = [{"id": "fig05/critical"}, {"id": "fig11/slides/six-points"}]
+    claims = [{"id": f"fig11/slides/{case}"} for case in ("twelve-points", "six-points")]
+    claims.append({"id": "fig05/critical"})
     (tmp_path / "results.json").write_text(json.dumps({"studies": [{"claims": claims}]}))
     monkeypatch.setattr(pages, "REPORT", tmp_path)
     text = pages.linked_claims("`fig05/critical`, `fig11/slides`, `docs/site`")
