@@ -120,7 +120,6 @@ def test_the_plain_reference_detects_a_wrong_kernel(tmp_path, monkeypatch):
         }
 
     monkeypatch.setattr("compare.sweep.compute.work.compute", wrong)
-    monkeypatch.setattr("compare.sweep.compute.work.DOUBLINGS", 0)
     monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
     store = swept(tmp_path / "s", replace(RANDOM, duration=40.0), 13)
     difference = store.get("check")["difference"].values
