@@ -87,9 +87,3 @@ def test_the_source_archive_has_every_file_except_those_of_the_repository():
     by_itself = {*PACKAGES, "pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"}
     for path in tracked():
         assert path.parts[0] in named | by_itself or path.parts[0].startswith("."), path
-
-
-def test_paths_of_the_workflows_are_there():
-    for workflow in (ROOT / ".github" / "workflows").glob("*.yml"):
-        for name in re.findall(r"[\w./-]+\.(?:txt|py)\b", workflow.read_text(encoding="utf-8")):
-            assert (ROOT / name).exists(), f"{workflow.name}: {name}"

@@ -59,14 +59,13 @@ def test_an_exception_without_text_is_named():
 
 
 @pytest.mark.usefixtures("in_this_process")
-@pytest.mark.filterwarnings("ignore:Glyph")
 def test_no_cell_of_a_table_is_a_formula(tmp_path):
-    names = ["=cmd|'/C calc'!A0", "+1", "-1", "@SUM(A1)", "\t=1", "\n=2", "＝1"]
+    names = ["=cmd|'/C calc'!A0", "\t=1", "＝1"]
     engines = tuple(Engine(name, fake_studies.straight) for name in names)
     assert [engine.name for engine in engines] == ["'" + name.strip() for name in names]
-    write_report(run((fake_studies.VERDICTS,), engines, folder=tmp_path / "data"), tmp_path)
-    tables = [table.read_text("utf-8").splitlines()[1:] for table in tmp_path.glob("arrays/**/*.csv")]
-    assert {"'"} <= {line[0] for table in tables for line in table} <= {"'", '"', "t"}
+    write_report(run((fake_studies.AGREEMENT,), engines, folder=tmp_path / "data"), tmp_path)
+    (table,) = tmp_path.glob("arrays/**/*.csv")
+    assert {line[0] for line in table.read_text("utf-8").splitlines()[1:]} == {"'"}
 
 
 @pytest.fixture
@@ -78,11 +77,11 @@ def hostile(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("command", "status"), [("report verdicts", 1), ("matrix --output out", 3), ("simulate pin", 1)]
+    ("command", "status"), [("report asking", 1), ("matrix --output out", 3), ("simulate pin", 1)]
 )
 @pytest.mark.usefixtures("in_this_process")
 def test_hostile_text_of_an_engine_is_shown_and_written_escaped(command, status, hostile, tmp_path, capfd):
-    assert cli.status([*command.split(), "--engine", hostile], fake_studies.ALL) == status
+    assert cli.status([*command.split(), "--engine", hostile], (fake_studies.ASKING,)) == status
     out, err = capfd.readouterr()
     assert is_clean(out + err)
     assert SHOWN in out + err

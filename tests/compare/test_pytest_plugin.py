@@ -43,12 +43,6 @@ def picky(system, *arguments, tolerance=1e-9):
     assert system.disc_speed < 2.0, "no fast discs"
     return reference_model.simulate(system, *arguments, tolerance=tolerance)
 
-def slow(system, *arguments, step):
-    if system.disc_speed == 0.0:
-        time.sleep(0.3)
-    return reference_model.simulate(system, *arguments, tolerance=1e-9 * (step / 1e-3) ** 2)
-slow.step = 1e-3
-
 def sliding(*arguments, tolerance=1e-9):
     return reference_model.simulate(*arguments, tolerance=tolerance)
 sliding.sticks = False
@@ -123,17 +117,16 @@ def judge(folder, study, *names, options=(), run=run, **more):
     return run(folder, "--pyargs", "compare", "--study", study, *chosen, *options, **more)
 
 
-def test_every_study_of_engines_lists_its_claims():
+def test_every_claim_of_a_level_is_collected_once(tmp_path):
+    for level in ("full", "quick"):
+        options = ("--engine", "nobody:simulate", "--level", level, "--collect-only", "-q")
+        _, output, _ = run(tmp_path, "--pyargs", "compare", *options)
+        collected = [line.partition("::")[2] for line in output.splitlines() if "::" in line]
+        wanted = [study for study in STUDIES if not study.only and (study.quick or level == "full")]
+        assert sorted(collected) == sorted(claim for study in wanted for claim in study.sentences())
+    assert all(CLAIMS.values())
     for name, listed in CLAIMS.items():
-        assert listed, name
         assert len(set(listed)) == len(listed), name
-
-
-def test_every_claim_is_collected_once(tmp_path):
-    _, output, _ = run(tmp_path, "--pyargs", "compare", "--engine", "nobody:simulate", "--collect-only", "-q")
-    collected = [line.partition("::")[2] for line in output.splitlines() if "::" in line]
-    of_any = [study for study in STUDIES if not study.only]
-    assert sorted(collected) == sorted(claim for study in of_any for claim in study.sentences())
 
 
 @pytest.mark.parametrize(
@@ -201,17 +194,6 @@ def test_a_study_out_of_time_fails_no_claim(quick, tmp_path):
     assert status == (NOTHING_MEASURED if quick else NOTHING_SHOWN)
 
 
-def test_the_quick_level_does_not_attempt_claims_that_would_take_too_long(tmp_path):
-    options = ("--level", "quick", "-k", "not cancel")  # leaves one short claim
-    _, output, cases = judge(tmp_path, "whirl-stability", "mine:slow", options=options)
-    # 0.3 s for half a second of motion, and motions of 13,000, 2,700 and 2,000 s
-    said = re.findall(r"would take about ([0-9.e+]+) s with mine:slow; use --level full \((\d) claim", output)
-    assert [(pytest.approx(float(time), rel=0.2), count) for time, count in said] == [
-        (7800.0, "2"), (1600.0, "2"), (1200.0, "1")
-    ]  # fmt: skip
-    assert [tag for tag, _ in cases.values()].count("passed") == 1
-
-
 def test_an_exception_costs_only_the_claims_that_need_the_motion(tmp_path):
     _, output, cases = judge(tmp_path, "fig04", "mine:picky")
     tags = {claim: tag for claim, (tag, _) in cases.items()}
@@ -255,13 +237,9 @@ def example(tmp_path):
     return tmp_path
 
 
-def test_the_example_fails_without_its_error_and_passes_with_it(example):
+def test_the_example_passes_with_its_error_and_reports_what_it_cannot_simulate(example):
     """The number of inconclusive claims of the coarse engine depends on the remaining time."""
-    allowed = {
-        "example:euler": {"failure"},
-        "example:runge_kutta": {"passed"},
-        "rough:honest": {"passed", "skipped"},
-    }
+    allowed = {"example:runge_kutta": {"passed"}, "rough:honest": {"passed", "skipped"}}
     left_out = ("hardens", "range", "play", "Momentum", "Position")
     chosen = ("-k", " and ".join(f"not {word}" for word in left_out))
     _, output, cases = judge(example, "trajectories", *allowed, options=chosen)
@@ -273,8 +251,8 @@ def test_the_example_fails_without_its_error_and_passes_with_it(example):
             found, _ = cases[f"{claim} [{engine}]"]
             assert found in (verdicts if claim in slide else {"skipped"}), (claim, engine)
     left_open = sum(cases[f"{claim} [rough:honest]"][0] == "skipped" for claim in slide)
-    assert f"{len(slide)} failed, {2 * len(slide) - left_open} passed" in output
-    assert f" {3 * len(asked - slide)} not attempted" in output
+    assert f"{2 * len(slide) - left_open} passed" in output
+    assert f" {2 * len(asked - slide)} not attempted" in output
     assert f" {left_open} inconclusive" in output or left_open == 0
     assert ("inconclusive: the error budget of " in output) == (left_open > 0)
     for lacking in ("stick", "a disc on a continuous ring or a disc on single points"):
@@ -292,15 +270,12 @@ REFUSED = [
         USAGE,
         "unknown study 'fig6': did you mean 'fig06'?",
     ),
-    *(
-        (f"--pyargs compare.studies.{module}", USAGE, f"compare.studies.{module}: {BY_ITS_NAME} {name}\n")
-        for module, name in {
-            "trajectories": "trajectories",
-            "sticking_domain": "sticking-domain",
-            "drivetrain.run_up.claims": "drivetrain-run-up",
-            "no_such_study": "NAME",
-        }.items()
+    (
+        "--pyargs compare.studies.drivetrain.run_up.claims",
+        USAGE,
+        f"compare.studies.drivetrain.run_up.claims: {BY_ITS_NAME} drivetrain-run-up\n",
     ),
+    ("--pyargs compare.studies.no_such", USAGE, f"compare.studies.no_such: {BY_ITS_NAME} NAME\n"),
     ("--pyargs compare", NOTHING, "no engine given; use --engine MODULE:FUNCTION"),
     (FILE, NOTHING, "no engine given; use --engine MODULE:FUNCTION"),
 ]
@@ -315,7 +290,6 @@ def test_invalid_options_are_rejected_at_once(arguments, expected, sentence, tmp
 
 OTHERS = {
     "test_of_others.py": (),
-    "test_compare.py": ("test_compare.py",),
     "tests/test_compare.py": ("tests/test_compare.py::test", "-k", "test or compare"),
     "compare/test_engines.py": ("compare",),
     "comparelib/test_it.py": ("--pyargs", "comparelib.test_it"),

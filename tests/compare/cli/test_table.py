@@ -51,18 +51,15 @@ BAD = [
     ("report --jobs 0", "jobs = 0: it must lie between 1 and 1000"),
     ("report --jobs two", "jobs = 'two': it must be a whole number"),
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),
-    ("report --study-limit soon", "study-limit = 'soon': it must be a number"),
     ("report pushes --data .", "--data .: no such folder, or it contains no logs like 10_90_10_…txt.xz"),
     ("report --min-conclusive -1", "min-conclusive = -1: it must lie between 0 and 1000000"),
     ("report --level quick verdicts", "--level quick cannot be combined with named studies (verdicts)"),
     ("report --output a --output b", "--output is given 2 times; give it once"),
     ("report --output ''", "--output '': it must not be empty"),
     ("report --output file/report", f"cannot write to the folder 'file/report': {NO_FOLDER}"),
-    ("report --output file", f"cannot write to the folder 'file': {THERE}"),
     ("report --claim verdicts/x verdicts", CLAIM),
     ("report --claim verdicts/x --level quick", CLAIM),
     ("report --claim verdicts/x --resume", CLAIM),
-    ("report --claim ''", "--claim '': it must not be empty"),
     ("matrix --limit 0", "limit = 0 s: it must be > 0"),
     ("matrix --benchmark --recorded", "--recorded: the benchmark has no recorded results; omit it"),
     ("plan --kind sphere", "…unknown kind of system 'sphere'…"),
@@ -77,18 +74,11 @@ BAD = [
     ("simulate", "…"),
     (f"{PIN} --plot a.gif", "--plot 'a.gif': the file name must end in .png or .pdf or .svg"),
     (f"{PIN} --plot file/a.png", f"cannot write the file 'file/a.png': {NO_FOLDER}"),
-    ("simulate pim", "…"),
-    (f"{PIN} --sett a=1", "…"),
     (f"{PIN} --start 0 0", "…"),
-    (f"{DISC} --start 0 0 0 0", "…"),
     (f"{PIN} --start 0 0 0 x", "start = 'x': it must be a number"),
     (f"{PIN} --start 0 nan 0 0", "start = nan: it must be finite"),
-    (f"{PIN} --start 0 1 2 3 --start 4 5 6 7", "--start is given 2 times; give it once"),
-    (f"{PIN} --engine referense", "unknown engine 'referense': did you mean 'reference'?"),
     (f"{PIN} --set disk_speed=1", "unknown parameter 'disk_speed': did you mean 'disc_speed'?"),
-    (f"{PIN} --set shaft_speed=1", "unknown parameter 'shaft_speed': did you mean 'disc_speed'?"),
     (f"{PIN} --set mass", "--set 'mass': write it as NAME=VALUE"),
-    (f"{PIN} --set mass=heavy", "mass = 'heavy': it must be a number"),
     (f"{PIN} --set mass=-1", "mass = -1 kg: it must be > 0"),
     (f"{PIN} --set mass=1 --set mass=2", "--set mass is given more than once; give it once"),
     (f"{PIN} --set mass=1e-320", f"mass = 9.99989e-321 kg: {SIZE}"),
@@ -99,23 +89,16 @@ BAD = [
     (f"{DISC} --set shaft_damping=none", "shaft_damping = 'none': it must be a number"),
     (f"{DISC} --set contact_points=2.5", f"contact_points = 2.5: it must be {POINTS}"),
     (f"{PIN} --until 0", "until = 0 s: it must be > 0"),
-    (f"{PIN} --until nan", "until = nan: it must be finite"),
     (f"{PIN} --samples 1", "samples = 1: it must lie between 2 and 10000000"),
-    (f"{PIN} --samples 1{14 * '0'}", f"samples = {10**14}: it must lie between 2 and 10000000"),
     (f"{PIN} --tolerance 1", "tolerance = 1: it must lie between 1e-14 and 1e-2"),
     (f"{PIN} --output pin.txt", "unknown format of 'pin.txt': the file name must end in .csv or .json"),
-    (f"{PIN} --output file/pin.csv", f"cannot write the file 'file/pin.csv': {NO_FOLDER}"),
     (f"{PIN} --output no/pin.csv", f"cannot write the file 'no/pin.csv': {MISSING}"),
     (f"{DISC} --engine fake_studies:failing", "… does not simulate a disc on a continuous ring"),
-    (f"{DISC} --engine fake_studies:failing --set contact_points=6", "… a disc on single points"),
     ("sweep basin pins", "unknown system 'pins': did you mean 'pin'?"),
-    (f"{BASIN} --x spin=0:1:5", "unknown component 'spin'…"),
     (f"{BASIN} --x offset=0:1:5", "unknown component 'offset': choose from x, y, vx, vy"),
     (f"{BASIN} --x x=1:1:5", "axis x from 1 to 1: the lower end must be less than the upper end"),
     (f"{BASIN} --x x", "axis 'x': write it as NAME=LOW:HIGH:POINTS"),
-    (f"{BASIN} --x x=0:1", "axis 'x=0:1': write it as NAME=LOW:HIGH:POINTS"),
     (f"{BASIN} --x x=0:inf:5", "x = inf: it must be finite"),
-    (f"{BASIN} --x x=0:a:5", "x = 'a': it must be a number"),
     (f"{BASIN} --x x=0:1:1", "axis x with 1 points: it must have 2 to 100000…"),
     (f"{BASIN} --x x=0:1:2.5", "axis 'x=0:1:2.5': the number of points must be a whole number"),
     (f"{BASIN} --x x=-1e308:1e308:10", "axis x from -1e+308 to 1e+308: the range must be finite"),
@@ -127,17 +110,14 @@ BAD = [
     (f"{BASIN} --coarse 1", "coarse = 1: it must lie between 2 and…"),
     (f"{BASIN} --chunk 0", "chunk = 0: it must lie between 1 and…"),
     (f"{BASIN} --until 0", "until = 0 s: it must be > 0"),
-    (f"{BASIN} --tolerance 1", "tolerance = 1: it must lie between…"),
     (f"{BASIN} --seed -1", "seed = -1: it must lie between 0 and…"),
     (f"{BASIN} --start z=1", "unknown component 'z'…"),
     (f"{BASIN} --start 0.1", "--start '0.1': write it as NAME=VALUE,NAME=VALUE"),
     (f"{BASIN} --start y=1,y=2", "--start 'y=1,y=2': y is given more than once"),
     (f"{BASIN} --start x=1", f"--start x: {AXES} x; leave one of them out"),
-    (f"{BASIN} --set mass=0", "mass = 0 kg: it must be > 0"),
     (f"{BASIN} --set hardening=1", "hardening = 1…"),
     (f"{BASIN} --output file", f"cannot write to the folder '…file': {THERE}"),
     (f"{BASIN} --output s4://sweeps", "cannot open 's4://sweeps': …; use a folder or s3://BUCKET/NAME"),
-    (f"{BASIN} --scheduler here", "scheduler = 'here': write it as tcp://HOST:PORT"),
     (f"{BASIN} --scheduler tcp://here", "scheduler = 'tcp://here': write it as tcp://HOST:PORT"),
     (f"{BASIN} --scheduler tcp://here:port", "scheduler = 'tcp://here:port': write it as tcp://HOST:PORT"),
     (f"{MAP} --x vx=0:1:5", "unknown parameter 'vx'…"),
@@ -150,15 +130,12 @@ BAD = [
     (f"{UNCERTAIN} --vary 'mass=gauss(1, 0.1)'", "unknown distribution 'gauss': choose from normal, …"),
     (f"{UNCERTAIN} --vary 'mass=normal(1)'", f"mass=normal(1): {OF_NORMAL}"),
     (f"{UNCERTAIN} --vary 'mass=normal(1, 0)'", f"mass=normal(1, 0): {OF_NORMAL}"),
-    (f"{UNCERTAIN} --vary 'mass=normal(1, x)'", "mass = ' x': it must be a number"),
     (f"{UNCERTAIN} --vary 'mass=uniform(2, 1)'", "… uniform takes (low, high) with low < high"),
     (f"{UNCERTAIN} --vary 'mass=uniform(0, 1)'", "… includes mass = 0, but it must be > 0…"),
     (f"{UNCERTAIN} --vary 'mass=triangular(1, 3, 2)'", "… with low <= mode <= high and low < high"),
     (f"{UNCERTAIN} --vary 'mas=normal(1, 0.1)'", "… 'mas': did you mean 'mass'?"),
-    (f"{UNCERTAIN} --vary 'hardening=uniform(0, 1)'", "unknown parameter or component 'hardening'…"),
     ("sweep uncertainty disc --vary 'contact_points=uniform(3, 6)'", "unknown … 'contact_points'…"),
     (f"{UNCERTAIN} --vary 'mass=normal(1'", "--vary 'mass=normal(1': write it as NAME=DISTRIBUTION…"),
-    (f"{UNCERTAIN} --vary mass=normal:1:0.1", "--vary 'mass=normal:1:0.1': write it as NAME=DISTRIBUTION…"),
     (f"{UNCERTAIN} {NORMAL} --vary 'x=uniform(0, 1)'", "--vary x is given more than once; give it once"),
     (f"{UNCERTAIN} {NORMAL} --samples 1000", "samples = 1000: it must be a power of 2, for example 1024"),
     (f"{UNCERTAIN} {NORMAL} --samples 128", "samples = 128: it must lie…"),
@@ -167,31 +144,36 @@ BAD = [
     (f"{ALONG} --x x=0:1:5", "unknown parameter 'x'…"),
     (f"{ALONG} --vary 'mass=uniform(1, 2)'", "…unknown component 'mass'…"),
     (f"{ALONG} --set disc_speed=2", "--set disc_speed: --x already varies disc_speed; leave one of them out"),
-    (f"{ALONG} --x mass=-1:1:3", "mass = -1 kg: it must be > 0"),
     ("sweep shock --set damping=0.5", "no saddle-type stick-slip orbit at these parameters, so …"),
     ("sweep shock --set offset=0", "friction_force = 0.09 N: the self-centred equilibrium exists only…"),
     ("sweep figures nowhere", "…is not the store of a sweep…"),
 ]
 
 ENGINE = """
+import sys
+from compare.engines import UnsupportedSystemError
 def fails(system, initial_state, times, *, tolerance):
     raise KeyError('inside')
 def nothing(system, initial_state, times, *, tolerance):
     pass
-def other(): pass
+def refusing(*arguments, **accuracy):
+    raise UnsupportedSystemError('nothing')
+def leaving(*arguments, **accuracy):
+    sys.exit(0)
 """
 
 FAILED = [
     (f"{PIN} --engine fake_studies:failing", f"engine 'fake_studies:failing' failed: {GAVE_UP}"),
     (
         f"{PIN} --engine engines_of_mine:fails",
-        "engine 'engines_of_mine:fails' failed: KeyError: 'inside' (engines_of_mine.py:3 in fails)",
+        "engine 'engines_of_mine:fails' failed: KeyError: 'inside' (engines_of_mine.py:5 in fails)",
     ),
     (
         f"{PIN} --engine engines_of_mine:nothing",
         "engine 'engines_of_mine:nothing' failed: TypeError: simulate() returned None: it must be a…",
     ),
-    (f"{PIN} --engine engines_of_mine:other", "engine 'engines_of_mine:other' failed: TypeError: other() …"),
+    (f"{PIN} --engine engines_of_mine:refusing", "…"),
+    (f"{PIN} --engine engines_of_mine:leaving", "…"),
 ]
 
 STUDIES = (fake_studies.VERDICTS, fake_studies.AGREEMENT)

@@ -36,9 +36,7 @@ def test_results_match_the_published_schema(results):
     "wrong",
     [
         lambda it: it.pop("version"),
-        lambda it: it.update(version=2),
         lambda it: it["studies"][0]["claims"][0].update(verdict="agreed"),
-        lambda it: it["studies"][0]["claims"][0].update(resolution="wide"),
         lambda it: it["studies"][0]["claims"][0]["decided_by"].pop("unit"),
         lambda it: it["stamp"].pop("commit"),
     ],
@@ -113,22 +111,10 @@ def test_a_badge_counts_agreement_and_is_red_for_differences(reported, tmp_path)
     assert "#1d5c38" in (tmp_path / "badge.svg").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
-        (None, "cannot read .*: No such file"),
-        ("{", "is not the results.json of a report"),
-        ("[]", "is not the results.json of a report"),
-        (
-            '{"format": "friction-discs results", "version": 7}',
-            "has version 7, but this program reads version 1",
-        ),
-    ],
-)
-def test_another_file_is_rejected(tmp_path, content, sentence):
-    if content is not None:
-        (tmp_path / "results.json").write_text(content, encoding="utf-8")
-    with pytest.raises(ValueError, match=sentence):
+def test_a_report_of_another_version_is_rejected(tmp_path):
+    content = '{"format": "friction-discs results", "version": 7}'
+    (tmp_path / "results.json").write_text(content, encoding="utf-8")
+    with pytest.raises(ValueError, match="has version 7, but this program reads version 1"):
         read_results(tmp_path)
 
 

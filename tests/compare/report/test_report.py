@@ -19,7 +19,7 @@ from compare.claims.errata import TEXT, Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli.app import status
 from compare.engines import EVERY_KIND, Engine
-from compare.report.matrix import WORST_FIRST, State
+from compare.report.matrix import State
 from compare.report.page import summary
 from compare.report.quotes import parts
 from compare.report.results_json import read_results
@@ -28,6 +28,8 @@ from compare.run.runner import run
 from compare.studies import STUDIES
 
 pytestmark = pytest.mark.usefixtures("all_in_this_process")
+
+UNDRAWN = fake(VERDICTS.name, VERDICTS.title, VERDICTS.prose.paper, fake_studies.measure_verdicts)
 
 
 class Cells(HTMLParser):
@@ -210,9 +212,8 @@ SAID = (
 )
 
 
-@pytest.mark.parametrize("words", SAID)
-def test_commands_code_and_parameters_of_claims_are_on_the_page(words, page):
-    assert words in page
+def test_commands_code_and_parameters_of_claims_are_on_the_page(page):
+    assert [words for words in SAID if words not in page] == []
 
 
 def test_the_report_does_not_reveal_its_machine(page, reported):
@@ -223,7 +224,7 @@ def test_the_report_does_not_reveal_its_machine(page, reported):
 
 
 def test_junit_shares_the_time_of_an_engine_among_its_claims(tmp_path):
-    result = run((VERDICTS,), (Engine("good", straight),), folder=tmp_path / "data")
+    result = run((UNDRAWN,), (Engine("good", straight),), folder=tmp_path / "data")
     result.seconds["verdicts", "good"] = 8.0
     write_report(result, tmp_path)
     root = ET.parse(tmp_path / "junit.xml").getroot()
@@ -245,7 +246,7 @@ def partly_reported(tmp_path_factory, all_in_this_process):
 
 
 def test_not_simulated_is_a_separate_state(partly_reported):
-    result, matrix, _ = partly_reported
+    result, matrix, folder = partly_reported
     states = {
         row.sentence: {column: cell.state for column, cell in row.cells.items()}
         for row in matrix.of(matrix.studies[0]).rows
@@ -256,15 +257,17 @@ def test_not_simulated_is_a_separate_state(partly_reported):
         POINTS: {"all": yes, "some": yes, "pins": no},
         RING: {"all": yes, "some": no, "pins": no},
     }
-    (row,) = matrix.of(matrix.studies[1]).rows
-    assert row.cells["some"].reason == "some does not simulate a disc on a continuous ring"
-    assert row.cells["pins"].state is State.NOT_SIMULATED
     assert matrix.totals == {yes: 7, no: 5}
-    assert (
-        summary(matrix)
-        == "7 checks against independent evidence agree, 0 differ, 0 inconclusive, 5 not simulated"
-    )
+    totals = "7 checks against independent evidence agree, 0 differ, 0 inconclusive, 5 not simulated"
+    assert summary(matrix) == totals
     assert set(result.data(RING_ONLY)) == {"all"}  # other studies have no figures
+    results = read_results(folder)
+    assert results["totals"]["not simulated"] == 5
+    units = results["studies"][1]["units"]
+    assert [unit["state"] for unit in units.values()] == ["finished", "not simulated", "not simulated"]
+    assert units["some"]["reason"] == "some does not simulate a disc on a continuous ring"
+    root = ET.parse(folder / "junit.xml").getroot()
+    assert (root.get("tests"), root.get("skipped"), root.get("errors")) == ("12", "5", "0")
 
 
 def test_the_page_gives_the_reason_once_per_study_and_counts_it_separately(partly_reported):
@@ -300,7 +303,7 @@ def test_a_reason_with_a_part_that_is_listed_already_adds_only_the_rest(partly_r
     assert (legend.count(reason), legend.count("some is slow")) == (1, 1)
 
 
-@pytest.mark.parametrize(("study", "shown"), [(PARTLY, True), (VERDICTS, False)])
+@pytest.mark.parametrize(("study", "shown"), [(PARTLY, True), (UNDRAWN, False)])
 def test_a_finding_is_on_the_first_screen_while_all_claims_of_its_study_agree(tmp_path, study, shown):
     study = replace(study, prose=replace(study.prose, finding="Straight on."))
     engines = (Engine("one", straight, EVERY_KIND), Engine("pins", straight))
@@ -337,29 +340,10 @@ def test_studies_of_a_section_are_adjacent():
     assert [name for name, _ in groupby(sections)] == list(dict.fromkeys(sections))
 
 
-def test_results_for_programs_contain_claims_not_simulated(partly_reported):
-    _, _, folder = partly_reported
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    assert results["totals"]["not simulated"] == 5
-    units = results["studies"][1]["units"]
-    assert {name: unit["state"] for name, unit in units.items()} == {
-        "all": "finished",
-        "some": "not simulated",
-        "pins": "not simulated",
-    }
-    assert units["some"]["reason"] == "some does not simulate a disc on a continuous ring"
-    root = ET.parse(folder / "junit.xml").getroot()
-    assert (root.get("tests"), root.get("skipped"), root.get("errors")) == ("12", "5", "0")
-
-
 def test_a_gap_is_shown_even_if_no_engine_fills_it(tmp_path):
     matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
     (row,) = matrix.rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
-    assert (
-        summary(matrix)
-        == "0 checks against independent evidence agree, 0 differ, 0 inconclusive, 1 not simulated"
-    )
 
 
 ADAPTER = "compare/engines/live/bullet_engine.py"
@@ -367,16 +351,12 @@ ADAPTER = "compare/engines/live/bullet_engine.py"
 
 def settings():
     """Return recorded results of two engines for two claims: one agrees with both, the other with neither."""
-    settings = {("Kite", "cone"): 0.0, ("Kite", "box"): 0.25, ("ours", ""): 1e-6}
-    return [
-        replace(
-            recorded(
-                *name, {"A pin slides": (off, 1e-3), "A disc slides": (1e-4 + off, 1e-3)}, resolution=0.1
-            ),
-            adapter=ADAPTER if name[0] == "Kite" else "",
-        )
-        for name, off in settings.items()
-    ]
+    found = []
+    for name, off in {("Kite", "cone"): 0.0, ("Kite", "box"): 0.25, ("ours", ""): 1e-6}.items():
+        errors = {"A pin slides": (off, 1e-3), "A disc slides": (1e-4 + off, 1e-3)}
+        adapter = ADAPTER if name[0] == "Kite" else ""
+        found.append(replace(recorded(*name, errors, resolution=0.1), adapter=adapter))
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -418,11 +398,6 @@ def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_rep
     assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
     assert "1 check against independent evidence agrees, 0 differ, 0 inconclusive." in page
     assert "4 agree, 2 differ, 0 inconclusive." in page
-
-
-def test_every_state_has_a_priority():
-    assert set(WORST_FIRST) == set(State)
-    assert WORST_FIRST[-1] is State.AGREES
 
 
 def evidence():

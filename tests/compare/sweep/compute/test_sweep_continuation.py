@@ -13,7 +13,7 @@ from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.run import run
 from compare.sweep.compute.theory import theory_branches
 from compare.sweep.distributions import Uncertain
-from compare.sweep.plan import Continuation, plan_as_json, plan_from_json
+from compare.sweep.plan import Continuation
 from compare.sweep.quantities import Axis
 from compare.sweep.store import SweepStore
 from compare.sweep.summary import summary
@@ -67,15 +67,6 @@ def test_motions_that_differ_in_one_radius_only_are_matched_by_that(radius):
 def test_a_jump_begins_a_new_branch():
     found = [[Motion(2, 1, 0.0, radius)] for radius in (1.0, 1.0, 0.5, 0.5)]
     assert [sorted(branch) for branch in matched(found, lambda motion: motion.end)] == [[0, 1], [2, 3]]
-
-
-def test_starts_are_the_same_at_each_value_and_in_any_chunk():
-    states, parameters = PLAN.trajectories(range(200))
-    np.testing.assert_array_equal(states[:50], states[150:])
-    np.testing.assert_array_equal(parameters["disc_speed"].reshape(4, 50)[:, 0], PLAN.x.values)
-    some, _ = PLAN.trajectories(range(40, 110))
-    np.testing.assert_array_equal(some, states[40:110])
-    assert plan_from_json(plan_as_json(PLAN)) == PLAN
 
 
 @pytest.fixture(scope="module")

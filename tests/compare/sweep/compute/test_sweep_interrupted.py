@@ -30,6 +30,8 @@ def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_full_disk(
     assert capsys.readouterr() == ("", "Interrupted. Repeat the command with --resume to continue.\n")
     written = times(tmp_path)
     assert written
+    assert cli.status(["sweep", "figures", str(tmp_path)]) == 2
+    assert "is not finished; repeat it with --resume to complete it" in capsys.readouterr().err
 
     monkeypatch.setattr(sys, "dont_write_bytecode", True)  # it would be truncated
     allowed = resource.getrlimit(resource.RLIMIT_FSIZE)

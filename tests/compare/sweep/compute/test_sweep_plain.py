@@ -66,18 +66,30 @@ def test_a_pin_that_creeps_to_the_sticking_radius_is_not_a_whirl(duration):
 
 @pytest.mark.parametrize(("system", "start"), [STICKING, SLIPPING], ids=["sticking", "slipping"])
 def test_a_continued_motion_equals_one_simulated_at_once(system, start):
-    motion = twice_as_long(plain_trajectory(system, np.array(start), 3.0, 60.0, 1e-10))
-    assert motion.times[[0, -1]].tolist() == [0.0, 120.0]
+    motion = twice_as_long(plain_trajectory(system, np.array(start), 3.0, 30.0, 1e-10))
+    assert motion.times[[0, -1]].tolist() == [0.0, 60.0]
     assert 3.0 in motion.times
     assert np.all(np.diff(motion.times) > 0.0)
     at_once = simulate(system, start, motion.times, tolerance=1e-10)
     np.testing.assert_allclose(motion.states, at_once.states, atol=1e-7)
     ends = [phase.end for phase in motion.phases]
-    assert [0.0, *ends] == [*(phase.start for phase in motion.phases), 120.0]  # without gaps
+    assert [0.0, *ends] == [*(phase.start for phase in motion.phases), 60.0]  # without gaps
 
 
-def recomputed(monkeypatch, start, time, end):
-    """Return the end of a start of Fig. 5 and the simulated durations."""
+FIRST = 2.0 * LEAST_TURNS * 2.0 * np.pi / FIG5.disc_speed
+"""Shortest duration of a check in s."""
+
+CHECKS = [
+    ("whirl", 200.0, EndState.WHIRL, EndState.WHIRL, [400.0]),
+    ("whirl", 50.0, EndState.UNDECIDED, EndState.UNDECIDED, [50.0]),
+    ("equilibrium", 1.0, EndState.STUCK, EndState.SELF_CENTRED, FIRST * 2.0 ** np.arange(DOUBLINGS + 1)),
+]
+
+
+@pytest.mark.parametrize(("start", "time", "by_kernel", "expected", "simulated"), CHECKS)
+def test_a_check_takes_twice_the_kernels_time_and_doubles_it_before_an_end_counts_as_different(
+    start, time, by_kernel, expected, simulated, monkeypatch
+):
     durations = []
 
     def watching(function):
@@ -91,27 +103,12 @@ def recomputed(monkeypatch, start, time, end):
         monkeypatch.setattr(work, function.__name__, watching(function))
     x, y = Axis("y", 0.0, 1e-9, 2), Axis("vy", 0.0, 1e-9, 2)
     common = {"system": FIG5, "duration": 12000.0, "tolerance": 1e-9, "seed": 1}
-    plan = RandomBasin(**common, start=start, x=x, y=y, samples=1)
-    return recompute(plan, 0, time, end), durations
-
-
-def test_a_motion_is_simulated_twice_as_long_as_the_kernel_needed(monkeypatch):
-    found, durations = recomputed(monkeypatch, FIG5_STARTS["whirl"], 200.0, EndState.WHIRL)
-    assert (found.end, durations) == (EndState.WHIRL, [400.0])
-    at_time = simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 200.0]).states[-1]
+    plan = RandomBasin(**common, start=FIG5_STARTS[start], x=x, y=y, samples=1)
+    found = recompute(plan, 0, time, by_kernel)
+    assert found.end == expected
+    np.testing.assert_allclose(durations, simulated)
+    at_time = simulate(FIG5, FIG5_STARTS[start], [0.0, time]).states[-1]
     np.testing.assert_allclose(found.state, at_time, atol=1e-7)
-
-
-def test_the_duration_is_doubled_before_an_end_counts_as_different(monkeypatch):
-    found, durations = recomputed(monkeypatch, FIG5_STARTS["equilibrium"], 1.0, EndState.STUCK)
-    first = 2.0 * LEAST_TURNS * 2.0 * np.pi / FIG5.disc_speed
-    assert found.end == EndState.SELF_CENTRED
-    np.testing.assert_allclose(durations, first * 2.0 ** np.arange(DOUBLINGS + 1))
-
-
-def test_an_undecided_motion_is_simulated_up_to_its_time_only(monkeypatch):
-    _, durations = recomputed(monkeypatch, FIG5_STARTS["whirl"], 50.0, EndState.UNDECIDED)
-    assert durations == [50.0]
 
 
 def test_a_motion_without_turns_is_checked_too():

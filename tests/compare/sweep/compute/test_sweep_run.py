@@ -1,4 +1,4 @@
-"""Contents and resumption of sweeps in this process."""
+"""Contents of sweeps in this process."""
 
 import json
 import time
@@ -12,7 +12,7 @@ from long_sweeps import assert_same, content, silent
 from compare.claims.parameters import FIG5
 from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
 from compare.sweep.compute.run import run
-from compare.sweep.compute.work import Plain, compute, end_of, plain_trajectory, simulate_chunk
+from compare.sweep.compute.work import Plain, compute, end_of, plain_trajectory
 from compare.sweep.distributions import Uncertain
 from compare.sweep.plan import Basin, Map, RandomBasin, Uncertainty
 from compare.sweep.quantities import Axis
@@ -34,30 +34,9 @@ MAP = Map(
 )
 
 
-class Recording(InProcess):
-    """Records its tasks; stops after ``until`` tasks."""
-
-    def __init__(self, until=10**9):
-        self.calls, self.until = [], until
-
-    def run(self, tasks):
-        def counted():
-            for task in tasks:
-                if len(self.calls) == self.until:
-                    raise KeyboardInterrupt
-                self.calls.append(task)
-                yield task
-
-        yield from super().run(counted())
-
-    def simulated(self):
-        chunks = [task for task in self.calls if task.function is simulate_chunk]
-        return [np.asarray(task.arguments[3]).tolist() for task in chunks]
-
-
-def swept(path, plan, chunk, executor=None):
-    store = SweepStore.open(path) if path.exists() else SweepStore.create(path, plan, chunk)
-    run(store, executor or InProcess(), silent)
+def swept(path, plan, chunk):
+    store = SweepStore.create(path, plan, chunk)
+    run(store, InProcess(), silent)
     return store
 
 
@@ -141,6 +120,7 @@ def test_the_plain_reference_detects_a_wrong_kernel(tmp_path, monkeypatch):
         }
 
     monkeypatch.setattr("compare.sweep.compute.work.compute", wrong)
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
     store = swept(tmp_path / "s", replace(RANDOM, duration=40.0), 13)
     difference = store.get("check")["difference"].values
     np.testing.assert_allclose(difference, np.tile([0.0, 0.0, 0.0, 0.01], (len(difference), 1)), atol=1e-6)
@@ -176,18 +156,6 @@ def test_probability_of_the_whirl_and_its_sensitivities(tmp_path):
         start = [0.1, 0.0, float(result["vx"][i]), 0.0]
         motion = plain_trajectory(pin, np.array(start), 1.0, 400.0, 1e-9)
         assert end_of(motion) == int(result["end"][i])
-
-
-def test_an_interrupted_sweep_continues_without_repeating_work(tmp_path):
-    whole, first, second = Recording(), Recording(until=5), Recording()
-    swept(tmp_path / "whole", BASIN, 15, whole)
-    with pytest.raises(KeyboardInterrupt):
-        swept(tmp_path / "s", BASIN, 15, first)
-    done = len(list((tmp_path / "s").glob("round-*/steps/c/*")))
-    swept(tmp_path / "s", BASIN, 15, second)
-    assert 5 - AT_ONCE <= done <= 5
-    assert first.simulated()[:done] + second.simulated() == whole.simulated()
-    assert_same(content(tmp_path / "s"), content(tmp_path / "whole"))
 
 
 @pytest.mark.parametrize(("compiled", "at_once"), [(True, AT_ONCE), (False, 1)])

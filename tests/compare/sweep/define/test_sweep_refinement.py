@@ -36,13 +36,15 @@ def refine(shape, coarse, region):
         return last.value, truth, np.concatenate(numbers)
 
 
-@pytest.mark.parametrize("shape", [(100, 100), (257, 129), (64, 301), (2, 2)])
+@pytest.mark.parametrize("shape", [(257, 129), (64, 301), (2, 2)])
 @pytest.mark.parametrize("region", [disc, three_regions, rings, comb])
 def test_refinement_finds_the_region_as_a_full_grid_does(shape, region):
     grid, truth, numbers = refine(shape, 20, region)
     np.testing.assert_array_equal(grid.ends, truth)
     assert len(np.unique(numbers)) == len(numbers)  # no point twice
     np.testing.assert_array_equal(np.flatnonzero(grid.simulated), np.sort(numbers))
+    for y, x in np.argwhere(mixed(grid.ends)):
+        assert np.all(grid.simulated[y : y + 2, x : x + 2])
 
 
 @pytest.mark.parametrize("region", [disc, three_regions, rings, comb])

@@ -105,7 +105,7 @@ class Store(RuleBasedStateMachine):
 
 
 Store.TestCase.settings = settings(
-    max_examples=4,
+    max_examples=3,
     stateful_step_count=6,
     deadline=None,
     suppress_health_check=list(HealthCheck),
