@@ -9,6 +9,7 @@ import pytest
 from compare.claims.error_estimates import TIGHTEST
 from compare.claims.linearised_flow import measured_eigenvalues, rotated
 from compare.claims.parameters import FIG5, FIG11, parameters_of
+from compare.studies.toolkit.deviations import remaining_transient
 from reference_model.steady.steady_states import self_centred_equilibria
 
 
@@ -38,6 +39,12 @@ def test_rotating_states_by_one_angle_or_one_each():
     assert rotated(discs, angles) == pytest.approx(np.array(list(map(rotated, discs, angles))))
     assert rotated(discs[0], angles)[2] == pytest.approx(rotated(discs[0], 0.3))
     assert rotated(discs, 0.1)[2] == pytest.approx(rotated(discs[2], 0.1))
+
+
+def test_the_remaining_transient_is_the_deviation_of_an_exponential_decay():
+    left, rest, rate, delay = 1e-3, 5.0, 0.5, 4.0
+    earlier = rest + left * np.exp(rate * np.array([delay, 0.5 * delay, 0.0]))
+    assert remaining_transient(earlier, rest + left, rate, delay) == pytest.approx(left, rel=1e-9)
 
 
 def test_the_error_of_eigenvalues_covers_a_nonlinear_flow():
