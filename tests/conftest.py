@@ -11,6 +11,7 @@ import pytest
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 FIXTURE = "browser_path"
 
+os.environ.pop("PYTEST_ADDOPTS", None)  # it has been read, and tests start pytest with their own options
 gc.set_threshold(50_000, 10, 10)  # collecting all imported objects more often costs a tenth of the time
 
 
