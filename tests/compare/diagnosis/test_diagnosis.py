@@ -9,18 +9,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from faults.catalogue import SOUND, made, mistaken
+from scipy.optimize import brentq
 from stepping import box, chattering, cone, engine, pyramid, stepped, weaker_along_y
 
 from compare.diagnosis import findings, probes, run
 from compare.diagnosis.findings import MOTIONS, PROBES, Motion, motion
 from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
-from compare.diagnosis.laws import CONE, Friction, fitted, smoothing_of
+from compare.diagnosis.laws import CONE, SMOOTHINGS, Friction, fitted, smoothing_of
 from compare.diagnosis.probes import PULLS
 from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
 from compare.diagnosis.scaling import Scales
-from compare.engines import BadTrajectoryError, Engine, exudyn, plain, reference
+from compare.engines import COARSENING, USUAL_TOLERANCE, BadTrajectoryError, Engine, exudyn, plain, reference
 from reference_model import Trajectory
 
 RIGHT = engine("right")
@@ -253,6 +254,23 @@ def test_a_law_is_uncertain_if_another_fits_equally_well():
     assert (found.shape, found.sure) == (CONE, True)
 
 
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [
+        ("min(v/ε, 1)", lambda slip: min(slip, 1.0)),
+        ("tanh(v/ε)", math.tanh),
+        ("v/√(v² + ε²)", lambda slip: slip / math.hypot(slip, 1.0)),
+        ("2/π·arctan(v/ε)", lambda slip: math.atan(slip) * 2.0 / math.pi),
+    ],
+)
+def test_creep_names_its_regularisation_and_epsilon(name, law):
+    epsilon = 3e-4
+    creep = np.array([epsilon * brentq(lambda slip, pull=pull: law(slip) - pull, 0.0, 1e3) for pull in PULLS])
+    assert smoothing_of(creep) == (name, pytest.approx(epsilon, rel=1e-3))
+    (share,) = (one.share for one in SMOOTHINGS if one.name == name)
+    assert share(creep / epsilon) == pytest.approx(PULLS, rel=1e-9)
+
+
 def test_creep_that_does_not_depend_on_the_pull_is_no_known_regularisation():
     assert smoothing_of(np.full(len(PULLS), 1e-3))[0] == ""
 
@@ -272,6 +290,16 @@ def test_a_lag_of_one_step_is_reported_but_is_not_wrong():
     row, said = sentences(engine("previous", lagging=True))
     assert re.search(r"Friction lags the slip by (1\.0|0\.9\d*) steps\.", said)
     assert not row.wrong
+
+
+def test_every_engine_runs_at_the_same_number_of_tolerances():
+    stepped, adaptive = tolerances(RIGHT), tolerances(reference)
+    assert len(stepped) == len(adaptive) == RUNGS
+    assert stepped[-1] == adaptive[-1] == USUAL_TOLERANCE
+    assert RIGHT.step_at(stepped[0]) / RIGHT.step_at(stepped[-1]) == pytest.approx(2.0 ** (RUNGS - 1))
+    assert adaptive[0] / adaptive[1] == pytest.approx(COARSENING)
+    fourth = replace(RIGHT, order=4.0)
+    assert fourth.step_at(tolerances(fourth)[0]) == pytest.approx(8.0 * fourth.step)
 
 
 def test_a_converging_motion_has_its_order_and_a_valid_error_estimate():
