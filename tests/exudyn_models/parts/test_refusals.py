@@ -114,6 +114,11 @@ def test_arguments_of_a_part_between_two_bodies(part, change, message):
         (add_energy_balance, {"unit": math.nan}, r"unit = nan: it must be finite"),
         (
             add_energy_balance,
+            {},
+            "gains and losses are both empty: an energy balance needs at least one power",
+        ),
+        (
+            add_energy_balance,
             {"gains": {"brake": 0}, "losses": {"brake": 0}},
             r"'brake' names both a gain and a loss",
         ),
