@@ -78,6 +78,7 @@ def page(
     )
 
 
+@functools.cache
 def environment() -> Environment:
     """Return the environment of the templates."""
     result = Environment(

@@ -187,8 +187,13 @@ def engine_stamp(engine: Engine | None) -> str | None:
         content = _digest((str(path), path) for path in files)
     except OSError:
         return None
-    installed = sorted((one.name, one.version) for one in distributions())
-    return stamp(facts, content, repr(installed))
+    return stamp(facts, content, _installed())
+
+
+@cache
+def _installed() -> str:
+    """Return names and versions of all packages, cached because a process keeps its libraries."""
+    return repr(sorted((one.name, one.version) for one in distributions()))
 
 
 @cache

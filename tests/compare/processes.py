@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import os
 import signal
@@ -10,10 +9,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Hashable
-from importlib.metadata import distributions
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -72,25 +69,8 @@ class WorkerHere:
         pass
 
 
-@functools.cache
-def read_once() -> tuple[Callable[[], Any], Callable[[], Any]]:
-    """Return functions that read the templates of the report and the installed packages only once."""
-    from compare.report.page import environment
-
-    def installed() -> list[Any]:
-        return [SimpleNamespace(name=one.name, version=one.version) for one in distributions()]
-
-    return functools.cache(environment), functools.cache(installed)
-
-
 def work_here(patch: pytest.MonkeyPatch) -> None:
-    """Run workers in this process, where a test's patches apply to them.
-
-    Reading the templates and the installed packages takes most of the time of a small report.
-    """
-    templates, installed = read_once()
+    """Run workers in this process, where a test's patches apply to them."""
     patch.setattr(workers, "_Worker", WorkerHere)
     patch.setattr(workers, "wait", lambda connections, left: connections)
     patch.setattr(workers, "pickle", SimpleNamespace(dumps=lambda work: work, loads=lambda work: work))
-    patch.setattr("compare.report.page.environment", templates)
-    patch.setattr("compare.run.provenance.distributions", installed)

@@ -86,6 +86,7 @@ def test_the_stamp_of_an_installed_module_contains_its_file_and_all_versions(tmp
     site = tmp_path / "site-packages"
     (metadata := site / "helper-1.0.dist-info").mkdir(parents=True)
     monkeypatch.syspath_prepend(site)
+    monkeypatch.setattr(stamp, "_installed", stamp._installed.__wrapped__)  # one process for each version
 
     def now(own="", other="", version="1.0"):
         (site / "installed.py").write_text(own)
