@@ -1,12 +1,20 @@
-"""Tests of the page need a browser: without one they are deselected, except in CI."""
+"""Fixtures of several packages, which need a browser or a C compiler.
+
+Without a browser, tests of the page are deselected, except in CI.
+"""
 
 from __future__ import annotations
 
+import ctypes
+import functools
 import gc
 import os
 import shutil
+from pathlib import Path
 
 import pytest
+
+from fmu_models import MODELS, archive
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 FIXTURE = "browser_path"
@@ -43,3 +51,30 @@ def browser_path() -> str:
     if path is None:
         pytest.fail(f"CI is set, and no browser is there: install one of {', '.join(BROWSERS)}")
     return path
+
+
+@pytest.fixture(scope="session")
+def needs_compiler():
+    if archive.compiler() is None:
+        pytest.skip("there is no C compiler")
+    # Optimising takes longer than all tests together.
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(archive, "OPTIONS", tuple("-O0" if one == "-O2" else one for one in archive.OPTIONS))
+        yield
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory, needs_compiler):
+    """Return a function that compiles a model with a driver instead of FMI, which needs no FMI headers."""
+    driver = Path(__file__).parent / "fmu_models" / "driver.c"
+
+    @functools.cache
+    def of(name):
+        folder = tmp_path_factory.mktemp(name)
+        archive.write_sources(MODELS[name], folder)
+        shutil.copyfile(driver, folder / driver.name)
+        strict = ("-Wall", "-Wextra", "-Werror")
+        archive.compile_library(sorted(folder.glob("*.c")), folder / "model.so", *strict)
+        return ctypes.CDLL(str(folder / "model.so"))
+
+    return of

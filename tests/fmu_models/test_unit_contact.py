@@ -9,23 +9,7 @@ import ctypes
 import mpmath
 import numpy as np
 import pytest
-
-
-class Contact(ctypes.Structure):
-    _fields_ = [
-        ("inner", ctypes.c_double),
-        ("outer", ctypes.c_double),
-        ("points", ctypes.c_int),
-        ("angle", ctypes.c_double),
-        ("wear", ctypes.c_int),
-        ("pressure", ctypes.c_double * 3),
-        ("friction", ctypes.c_double),
-        ("static_ratio", ctypes.c_double),
-        ("epsilon", ctypes.c_double),
-    ]
-
-
-Three = ctypes.c_double * 3
+from contact_in_c import Contact, Three
 
 
 def contact(inner, outer, static_ratio=1.0, points=0, wear=0, pressure=(1.0, 1.0, 1.0)):

@@ -2,7 +2,7 @@
 
 P is the mean slip speed. With μN = 1 N, force and moment F dissipate the power −F·slip = P, and −F·v <= P(v) for any
 other slip v. In Exudyn and in C friction is viscous near rest: where P < ε the contact creeps, and F is its value at
-P = ε times P/ε. In C each of several points is viscous by itself.
+P = ε times P/ε. In C each of several points is regularised separately.
 """
 
 import ctypes
@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from contact_in_c import Contact, Three
 
 from exudyn_models.forces.friction_laws import (
     CONTINUOUS,
@@ -26,8 +27,6 @@ from exudyn_models.forces.friction_laws import (
 from exudyn_models.forces.jit import KeptOnDisk
 from exudyn_models.forces.laws.places import BEND, point_regularisation, ring_places, table_of
 from exudyn_models.forces.laws.pressures import density_of
-from fmu_models import MODELS
-from fmu_models.archive import compile_library, compiler, write_sources
 from reference_model.contact import Annulus, Pin, Points, Ring
 
 INNER, RADIUS, EPSILON, ANGLE = 0.08, 0.12, 1e-4, 0.3
@@ -144,42 +143,18 @@ def in_exudyn(shape, _):
     return Law(shape, on, EPSILON, delta)
 
 
-class InC(ctypes.Structure):
-    _fields_ = [
-        *((name, ctypes.c_double) for name in ("inner", "outer")),
-        ("points", ctypes.c_int),
-        ("angle", ctypes.c_double),
-        ("wear", ctypes.c_int),
-        ("pressure", ctypes.c_double * 3),
-        *((name, ctypes.c_double) for name in ("friction", "static_ratio", "epsilon")),
-    ]
-
-
 def in_c(shape, library):
     inner, outer, pressure = shape if callable(shape[-1]) else (max(x for x, *_ in shape),) * 2 + (uniform,)
     points = len(shape) if shape != PIN and not callable(shape[-1]) else 0
     factors = [pressure(r) for r in (inner, (inner + outer) / 2.0, outer)] if pressure != worn else [1.0] * 3
-    three = ctypes.c_double * 3
 
     def on(slip, angle):
-        contact = InC(inner, outer, points, angle, pressure == worn, three(*factors), 1.0, 1.0, EPSILON)
-        force = three()
-        library.friction(ctypes.byref(contact), three(*slip), force, ctypes.byref(ctypes.c_double()))
+        contact = Contact(inner, outer, points, angle, pressure == worn, Three(*factors), 1.0, 1.0, EPSILON)
+        force = Three()
+        library.friction(ctypes.byref(contact), Three(*slip), force, ctypes.byref(ctypes.c_double()))
         return list(force)
 
     return Law(shape, on, 0.0 if points else EPSILON, EPSILON)
-
-
-@pytest.fixture(scope="session")
-def library(tmp_path_factory):
-    """Return the contact of the units in C."""
-    if compiler() is None:
-        pytest.skip("there is no C compiler")
-    folder = tmp_path_factory.mktemp("contact")
-    write_sources(MODELS["clutch"], folder)
-    # Optimising takes longer than the tests.
-    compile_library(sorted(folder.glob("*.c")), folder / "contact.so", "-O0")
-    return ctypes.CDLL(str(folder / "contact.so"))
 
 
 IMPLEMENTATIONS = {"reference": in_reference, "exudyn": in_exudyn, "c": in_c}
@@ -197,7 +172,7 @@ EVERY = pytest.mark.parametrize(
 @pytest.fixture
 def make(implementation, request):
     """Return a function that makes the law of a shape."""
-    library = request.getfixturevalue("library") if implementation == "c" else None
+    library = request.getfixturevalue("library")("clutch") if implementation == "c" else None
     return lambda shape: IMPLEMENTATIONS[implementation](shape, library)
 
 

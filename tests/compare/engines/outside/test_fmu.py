@@ -21,7 +21,7 @@ from compare.engines import UnsupportedSystemError, engines
 from compare.engines.outside import fmu
 from compare.engines.outside.fmu import FmuError
 from compare.studies.engines.trajectories import STUDY
-from fmu_models import PIN, archive, export
+from fmu_models import PIN, export
 from fmu_models.description import description
 from reference_model.systems import COLUMNS
 
@@ -31,17 +31,13 @@ STEP = (("stopTime=", 'stepSize="0.01" stopTime='),)
 
 
 @pytest.fixture(scope="session")
-def packed(tmp_path_factory):
+def packed(tmp_path_factory, needs_compiler):
     """Return a function that exports a pin with a changed description, and returns its file."""
-    if archive.compiler() is None:
-        pytest.skip("there is no C compiler")
     folder = tmp_path_factory.mktemp("models")
 
     @functools.cache
     def exported(fmi):
-        with pytest.MonkeyPatch.context() as patch:  # optimising takes longer than the tests
-            patch.setattr(archive, "OPTIONS", tuple(one for one in archive.OPTIONS if one != "-O2"))
-            export(PIN, folder / f"pin{fmi}.fmu", fmi)
+        export(PIN, folder / f"pin{fmi}.fmu", fmi)
         with zipfile.ZipFile(folder / f"pin{fmi}.fmu") as unit:
             return {name: unit.read(name) for name in unit.namelist()}
 
