@@ -3,7 +3,6 @@
 import errno
 import os
 import stat
-from pathlib import Path
 
 import pytest
 
@@ -38,10 +37,17 @@ def test_link_and_permissions_of_a_replaced_file_are_kept(file, tmp_path):
     assert alone(file)
 
 
-def test_a_device_is_written_directly():
-    with replacing(Path(os.devnull)) as stream:
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_pipe_is_written_directly(tmp_path):
+    """A pipe stands for all devices. A fault in the code, run by root, would replace a real one."""
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    with replacing(path) as stream:
         stream.write("new\n")
-    assert not Path(os.devnull).is_file()
+    assert path.is_fifo()
+    assert os.read(reader, 100) == b"new\n"
+    os.close(reader)
 
 
 def test_a_check_of_a_path_changes_nothing(file):
