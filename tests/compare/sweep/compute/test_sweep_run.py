@@ -126,10 +126,8 @@ def test_the_plain_reference_detects_a_wrong_kernel(tmp_path, monkeypatch):
     np.testing.assert_allclose(difference, np.tile([0.0, 0.0, 0.0, 0.01], (len(difference), 1)), atol=1e-6)
     assert not same_ends(store)
     last = list(summary(store))[-1]
-    assert (
-        f"check of {len(difference)} trajectories by the plain reference: {len(difference)} end differ"
-        in last
-    )
+    checked = f"check of {len(difference)} trajectories by the plain reference"
+    assert f"{checked}: {len(difference)} end differently" in last
     assert last.endswith("m and 1.0e-02 m/s")
 
 
