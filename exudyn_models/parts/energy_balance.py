@@ -99,8 +99,8 @@ def add_energy_balance(
     Raises
     ------
     ValueError
-        If ``unit`` is not > 0, there is neither a gain nor a loss, a name is both, or a ``spring_energy`` refers to
-        an object without potential energy.
+        If ``unit`` is not > 0, ``gains`` and ``losses`` are both empty or share a name, or a ``spring_energy`` refers
+        to an object without potential energy.
 
     """
     unit = positive_number("unit", unit, "J")

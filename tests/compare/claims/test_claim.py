@@ -36,7 +36,7 @@ def test_verdict_of_a_number(difference, numerical, model, resolution, verdict):
         (2.0, 6e-5, {"resolution": 1e-9}, Grade.FINE, Verdict.AGREES),
         (2.0, 1.8e-2, {"resolution": 1e-9}, Grade.COARSE, Verdict.AGREES),
         (2.0, 1.0, {"resolution": 1e-9}, None, Verdict.INCONCLUSIVE),
-        # without a size there is no relative error
+        # the relative error needs a size
         (0.0, 1e-12, {}, None, Verdict.AGREES),
         (0.0, 1e-12, {"size": 1.0}, Grade.EXACT, Verdict.AGREES),
         (2.0, 1e-12, {"kind": "order"}, None, Verdict.AGREES),

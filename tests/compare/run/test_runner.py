@@ -55,18 +55,18 @@ def test_this_process_and_two_others_of_which_one_dies_find_and_draw_the_same(tm
 
 
 def test_progress_names_the_running_work_and_the_remaining_time(tmp_path, in_this_process):
-    def told(jobs, expected):
+    def progress_of(jobs, expected):
         found = []
         more = {"jobs": jobs, "expected": expected, "progress": lambda *one: found.append(one)}
         run((fake.AGREEMENT,), (fake.GOOD, fake.ALSO_GOOD), folder=tmp_path, **more)
         return found
 
-    found = told(1, {("agreement", "good"): 1000.0})  # the study itself expects 1 s
+    found = progress_of(1, {("agreement", "good"): 1000.0})  # the study itself expects 1 s
     assert found[0] == (0, 3, "agreement good", pytest.approx(1001.0, abs=1e-6))
     assert found[1] == (1, 3, "agreement also-good", pytest.approx(1.0, abs=1e-6))
     assert found[2][2] == "agreement figures"
     assert found[-1] == (3, 3, "", 0.0)
-    first, *_ = told(2, {("agreement", name): 1000.0 for name in ("good", "also-good")})
+    first, *_ = progress_of(2, {("agreement", name): 1000.0 for name in ("good", "also-good")})
     assert first == (0, 3, "agreement good, agreement also-good", pytest.approx(1000.0, abs=1e-6))
 
 
