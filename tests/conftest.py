@@ -1,6 +1,6 @@
 """Fixtures of several packages, which need a browser or a C compiler.
 
-Without a browser, tests of the page are deselected, except in CI.
+Tests of the page are deselected if there is no browser, except in CI.
 """
 
 from __future__ import annotations
