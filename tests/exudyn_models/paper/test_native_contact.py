@@ -14,8 +14,6 @@ from exudyn_models import add_native_friction, simulate_with_native_contact
 from exudyn_models.forces.laws.places import ring_places
 from reference_model.systems import DiscOnDisc
 
-SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
-STICKING_PIN = [0.1, 0.0, 0.03, 0.0]  # Fig. 5, second start
 DISC = replace(FIG11, contact_points=6)
 TABLE_DISC = replace(
     DISC,
@@ -39,7 +37,6 @@ RESTING = {
 }
 """System, start and span in s of motions with rests or releases of single points of a disc."""
 FEET = [(0.12, 0.0, 0.5), (-0.03, 0.07, 0.2), (-0.05, -0.06, 0.3)]
-SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7)
 
 
