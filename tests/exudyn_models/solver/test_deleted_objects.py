@@ -52,9 +52,8 @@ def test_a_contact_rubs_and_measures_after_a_contact_and_a_body_are_deleted_betw
         if not slides:
             assert [change.time for change in changes] == pytest.approx([3.0 * 0.5 / moment], abs=1e-9)
         heat = 0.5 * (3.0**2 - spin**2) / 2.0
-        accuracy = (
-            1e-6 if solve is solve_dynamic else 1e-2
-        )  # Exudyn's own run starts without the rate of heat
+        # Exudyn's own run starts without the rate of heat.
+        accuracy = 1e-6 if solve is solve_dynamic else 1e-2
         shown = [float(mbs.GetSensorValues(sensor)) for sensor in sensors]
         assert shown == pytest.approx([spin, -moment * slides, moment * spin, heat], rel=accuracy, abs=1e-9)
 
