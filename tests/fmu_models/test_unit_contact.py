@@ -16,11 +16,6 @@ def contact(inner, outer, static_ratio=1.0, points=0, wear=0, pressure=(1.0, 1.0
     return Contact(inner, outer, points, 0.3, wear, Three(*pressure), 2.0, static_ratio, 1e-3)
 
 
-def tapered(r):
-    """Return the load per radius for pressures in the ratio 0 : 2 : 3 at the inner, mean and outer radius."""
-    return r * (r - 0.05) * (0.225 - r)
-
-
 RING = contact(0.12, 0.12)
 ANNULUS = contact(0.05, 0.12, 1.2)
 WORN = contact(0.05, 0.12, 1.2, wear=1)
@@ -128,30 +123,6 @@ def test_friction_rises_to_its_peak_at_epsilon_and_is_constant_above_twice_epsil
     assert sizes[0] == pytest.approx(-contact.friction * contact.static_ratio, rel=1e-5)
     assert sizes[-1] == pytest.approx(-contact.friction, rel=1e-12)
     assert contact.static_ratio == 1.0 or np.all(np.diff(sizes) > 0.0)
-
-
-@pytest.mark.parametrize(
-    ("slip", "accuracy"),
-    [
-        ((0.3, -0.2, 1.0), 1e-10),  # every point slips
-        ((0.01, 0.02, -4.0), 1e-10),
-        ((0.2, 0.1, 2.5), 2e-4),  # with a resting point the sum is less accurate
-    ],
-)
-@pytest.mark.parametrize(
-    ("contact", "share"),
-    [(ANNULUS, lambda r: r), (WORN, lambda r: 1.0), (TAPERED, tapered)],
-    ids=["uniform", "worn", "tapered"],
-)
-def test_friction_of_an_annulus_is_the_sum_over_its_points(law, contact, share, slip, accuracy):
-    radii, weights = np.polynomial.legendre.leggauss(60)
-    radii = contact.inner + (contact.outer - contact.inner) * (0.5 + 0.5 * radii)
-    weights = weights * np.array([share(r) for r in radii])
-    arms = radii[:, None] * np.exp(2j * np.pi * np.arange(4000) / 4000)
-    each = complex(*slip[:2]) + 1j * slip[2] * arms
-    pushes = -contact.friction * (weights / weights.sum())[:, None] / 4000 * each / np.abs(each)
-    expected = [pushes.sum().real, pushes.sum().imag, np.sum((arms.conjugate() * pushes).imag)]
-    np.testing.assert_allclose(force(law, contact, slip)[0], expected, atol=accuracy)
 
 
 @pytest.mark.parametrize("contact", [PIN, RING, ANNULUS, WORN, TAPERED])
