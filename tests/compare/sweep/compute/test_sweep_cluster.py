@@ -129,7 +129,7 @@ def test_a_missing_scheduler_is_reported_in_time(listens, tmp_path, monkeypatch,
 def test_a_scheduler_without_workers_is_reported(monkeypatch):
     monkeypatch.setattr(executors, "WAIT", 1.0)
     with (
-        # Without an address its web server would want port 8787, which the machine may be using.
+        # Its web server warns if the default port is taken.
         LocalCluster(n_workers=0, processes=False, protocol="tcp", dashboard_address="127.0.0.1:0") as local,
         pytest.raises(ClusterError, match="has no workers; start one"),
     ):
