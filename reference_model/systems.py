@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 MOST_POINTS = 1000
 """Largest number of contact points; a continuous ring is cheaper than more."""
@@ -51,29 +52,16 @@ class _SupportedMass:
     def __post_init__(self) -> None:
         values = vars(self)
         # Valid values must pass quickly, because searches create many systems.
-        for name, (_, least) in self._parameters.items():
+        for name, (unit, least) in self._parameters.items():
             value = values[name]
             if type(value) is not float or not least <= value <= MOST:
-                self._check_numbers()
-                break
+                object.__setattr__(self, name, _checked_parameter(name, value, unit, least))
         for name, (formula, ratio) in self._ratios().items():
             if ratio > MOST_RATIO:
                 raise ValueError(
                     f"{name} = {getattr(self, name):g} {self._parameters[name][0]}: {formula} = {ratio:g} "
                     f"must be at most {MOST_RATIO:g}"
                 )
-
-    def _check_numbers(self) -> None:
-        for name, (unit, least) in self._parameters.items():
-            value = finite_number(name, getattr(self, name))
-            object.__setattr__(self, name, value)
-            positive = least > 0.0
-            if (positive and value <= 0.0) or value < 0.0 == least:
-                allowed = "> 0" if positive else ">= 0"
-                raise ValueError(f"{name} = {value:g} {unit}: it must be {allowed}")
-            if abs(value) > MOST or (positive and value < LEAST):
-                allowed = f"between {LEAST:g} and" if positive else "at most"
-                raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
 
     def _ratios(self) -> dict[str, tuple[str, float]]:
         """Return formula and value of each bounded ratio, by the parameter named in the error."""
@@ -221,6 +209,17 @@ def finite_number(name: str, value: Any) -> float:
         number = math.inf
     if not math.isfinite(number):
         raise ValueError(f"{name} = {number}: it must be finite")
+    return number
+
+
+def _checked_parameter(name: str, value: Any, unit: str, least: float) -> float:
+    number, positive = finite_number(name, value), least > 0.0
+    if (positive and number <= 0.0) or number < 0.0 == least:
+        allowed = "> 0" if positive else ">= 0"
+        raise ValueError(f"{name} = {number:g} {unit}: it must be {allowed}")
+    if abs(number) > MOST or (positive and number < LEAST):
+        allowed = f"between {LEAST:g} and" if positive else "at most"
+        raise ValueError(f"{name} = {number:g} {unit}: its size must be {allowed} {MOST:g}")
     return number
 
 

@@ -18,14 +18,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.contact.points import Points
-from reference_model.systems import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from reference_model.systems import ComplexArray, FloatArray
 
 MOST_ITERATIONS = 200
 

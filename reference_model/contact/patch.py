@@ -4,12 +4,9 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference_model.contact.points import Points
-from reference_model.systems import finite_number, require_whole
-
-ComplexArray = NDArray[np.complex128]
+from reference_model.systems import ComplexArray, finite_number, require_whole
 
 INSIDE = np.array([[2.0, 0.5, 0.5], [0.5, 2.0, 0.5], [0.5, 0.5, 2.0]]) / 3.0
 """Weights of a triangle's corners in the three points of the rule of degree 2.

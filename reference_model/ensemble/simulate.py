@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.ensemble.end_states import Ensemble
+from reference_model.ensemble.task import Task, parameter_table
 from reference_model.systems import (
     FloatArray,
     PinOnDisc,
@@ -63,22 +64,23 @@ def simulate_ensemble(
     require_supported(system)
     starts = _checked_starts(system, initial_states)
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
-    n = _number_of(len(starts), varied)
+    _require_same_number(len(starts), varied)
     duration = positive_number("duration", duration, "s")
     tolerance = checked_tolerance(tolerance)
     if threads is None:
         threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     require_whole("threads", threads, least=1)
 
+    task = Task(parameter_table(system, varied), starts, np.full(1, duration))
     # Each driver loads its own compiled code.
     if isinstance(system, PinOnDisc):
         from reference_model.ensemble.pin.driver import simulate_pins
 
-        results = simulate_pins(system, starts, duration, tolerance, varied, early_end, n, threads)
+        results = simulate_pins(system, task, tolerance, early_end, bool(varied), threads)
     else:
         from reference_model.ensemble.disc.driver import simulate_discs
 
-        results = simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
+        results = simulate_discs(system, task, tolerance, early_end, bool(varied), threads)
     return results.ensemble(varied.get("friction_force", system.friction_force))
 
 
@@ -139,10 +141,9 @@ def _numbers(name: str, values: Any) -> FloatArray:
     return array
 
 
-def _number_of(starts: int, varied: Mapping[str, FloatArray]) -> int:
+def _require_same_number(starts: int, varied: Mapping[str, FloatArray]) -> None:
     sizes = {"initial_states": starts, **{name: len(values) for name, values in varied.items()}}
     n = max(sizes.values())
     for name, size in sizes.items():
         if size != n and (name, size) != ("initial_states", 1):
             raise ValueError(f"{name} is for {size} trajectories, but there are {n}")
-    return n

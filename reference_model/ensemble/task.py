@@ -1,12 +1,12 @@
 """Trajectories in the form of compiled code, and their distribution to threads."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
 
-from reference_model.systems import FloatArray, System
+from reference_model.systems import FloatArray, PinOnDisc, System
 
 CHUNK = 512
 """Number of trajectories that a thread takes at a time: lanes are rarely empty, and threads end together."""
@@ -21,10 +21,15 @@ the length of an implicit step.
 PACE_SIZE = SPAN + 1
 
 
+OF_PIN = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
+OF_DISC = (*OF_PIN, "polar_inertia", "contact_radius", "shaft_damping", "shaft_speed")
+"""Parameters in the order of the kernels."""
+
+
 class Task(NamedTuple):
     """Trajectories to simulate; each array has a row per trajectory, or one for all.
 
-    ``parameters`` are in the order of the kernel's PARAMETERS, ``starts`` (1 or n, 4 or 6) in SI units, ``durations``
+    ``parameters`` are in the order of OF_PIN or OF_DISC, ``starts`` (1 or n, 4 or 6) in SI units, ``durations``
     in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros.
     """
 
@@ -33,11 +38,15 @@ class Task(NamedTuple):
     durations: FloatArray
     paces: FloatArray = np.zeros((1, PACE_SIZE))
 
+    @property
+    def size(self) -> int:
+        """Number of trajectories."""
+        return max(len(self.parameters), len(self.starts))
 
-def parameter_table(
-    system: System, names: Sequence[str], varied: Mapping[str, FloatArray] | None = None
-) -> FloatArray:
-    """Return the named parameters, shape (1 or n, parameters); those ``varied`` (n,) have a row per trajectory."""
+
+def parameter_table(system: System, varied: Mapping[str, FloatArray] | None = None) -> FloatArray:
+    """Return the parameters, shape (1 or n, parameters); those ``varied`` (n,) have a row per trajectory."""
+    names = OF_PIN if isinstance(system, PinOnDisc) else OF_DISC
     columns = [(varied or {}).get(name, getattr(system, name)) for name in names]
     return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns))).astype(float)
 

@@ -10,15 +10,13 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import NamedTuple
 
-from numpy.typing import ArrayLike
-
 from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
 from reference_model.formulas import pin as pin_formulas
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.stick import stuck_centre
 from reference_model.numerics.roots import zeros_between
 from reference_model.support import require_linear_support
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
+from reference_model.systems import DiscOnDisc, PinOnDisc
 
 OF_A_PIN = tuple(field.name for field in fields(PinOnDisc))
 
@@ -80,11 +78,6 @@ class ReducedParameters(NamedTuple):
     load: float
     shaft_damping: float
     speed_difference: float
-
-
-def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
-    """Return left side minus right side of (4), in m², which also holds for the disc."""
-    return pin_formulas.semicircle_residual(pin_of(disc), x, y)
 
 
 def position_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Position:

@@ -4,15 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from reference_model.contact.contact_law import Contact, contact_of
 from reference_model.support import Support
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import ComplexArray, DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
-
-ComplexArray = NDArray[np.complex128]
 
 SPLINE_DEGREE = 5
 

@@ -11,16 +11,16 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq, minimize, minimize_scalar
 
-from reference_model.contact.limit_surface import ComplexArray, PointsLimit
+from reference_model.contact.limit_surface import PointsLimit
 from reference_model.contact.points import Points
 from reference_model.motion.bodies import DiscBody
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pivot import OnePoint
-from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, Leave, come_to_rest, never
+from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, Leave, come_to_rest
 from reference_model.motion.slip.slide import slide, slide_slowly
 from reference_model.motion.stepper import Run
 from reference_model.motion.stick import GRAZING, ROUNDING
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
 SAMPLES_PER_TURN = 360
 
@@ -135,7 +135,7 @@ class PointsBody(DiscBody):
         point = self.points[i]
         if point.gain(own) < self._least_speed:
             motion = replace(self.pivoting[i], grip=None)
-            end = slide_slowly(self.run, motion, t, own, never)
+            end = slide_slowly(self.run, motion, t, own, lambda _: False)
             return end.t, motion.standard(np.array([end.y]).T)[:, 0].tolist()
         return self.begin_slip(t, own, self.slipping[i], point.pivoting_rates(own), point.leaving(own))
 

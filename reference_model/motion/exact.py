@@ -1,7 +1,7 @@
 """Event-driven simulation of pin and disc with set-valued Coulomb friction.
 
-- Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`), and stiff slip
-  implicitly (:mod:`.slip.stiff`). Slip that decays forever ends in closed form (:mod:`.bodies`).
+- Fast slip is integrated directly, slow slip in slip-polar coordinates, and stiff slip implicitly
+  (:mod:`.slip.slide`). Slip that decays forever ends in closed form (:mod:`.bodies`).
 - In stick, the body turns with the master disc up to the first root of eq. 7 (:mod:`.stick`).
 - The slip of a pin begins with a series (:func:`.stick.slip_from_rest`), that of a disc by collocation
   (:mod:`.slip.breakaway`).

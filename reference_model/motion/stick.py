@@ -9,13 +9,12 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pin_equations import SlipMotion
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
 GRAZING = 1e-8
 """Relative excess of the pull above friction that does not count as a release.
@@ -131,7 +130,7 @@ def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | 
     )
 
 
-def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) -> NDArray[np.float64]:
+def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) -> FloatArray:
     """Return the unit vector (u_x, u_y, r) of the slip that begins from rest at ``z`` when friction is exceeded.
 
     With the mean slip speed P(n) = F·U + M·S the slip s·n begins with ṡ = a·n − g·P(n), and n maximises this rate:
@@ -165,12 +164,12 @@ class SlipStart:
     in s of the return to rest, or inf.
     """
 
-    positions: NDArray[np.complex128]
-    slip: NDArray[np.complex128]
+    positions: ComplexArray
+    slip: ComplexArray
     duration: float
     rest: float
 
-    def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    def at(self, delays: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         powers = np.asarray(delays)[:, np.newaxis] ** np.arange(len(self.positions))
         return powers @ self.positions, powers @ self.slip
 

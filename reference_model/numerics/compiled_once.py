@@ -66,21 +66,17 @@ def compiled_for(
         folder = folder_of(package)
         if folder:
             stack.enter_context(_locked(Path(folder) / f"{function.__name__}.lock"))
-        stack.enter_context(_announcement())
-        stack.enter_context(_without_garbage_collection())
-        stack.enter_context(_cached_in(folder))
+        timer = threading.Timer(LONG, _announce)
+        timer.daemon = True
+        timer.start()
+        stack.callback(timer.cancel)
+        if gc.isenabled():  # garbage collection takes a tenth of the compile time
+            gc.disable()
+            stack.callback(gc.enable)
+        stack.callback(setattr, config, "CACHE_DIR", config.CACHE_DIR)
+        config.CACHE_DIR = folder
         compiling = numba.njit(kind, error_model="numpy", nogil=nogil, cache=bool(folder))
         return compiling(function)
-
-
-@contextmanager
-def _cached_in(folder: str) -> Iterator[None]:
-    before = config.CACHE_DIR
-    config.CACHE_DIR = folder
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
 
 
 @cache
@@ -138,31 +134,8 @@ def _locked(lock: Path) -> Iterator[None]:
         yield
 
 
-@contextmanager
-def _announcement() -> Iterator[None]:
-    """Print a line, once per process, if compiling takes long; worker processes are silent."""
-    timer = threading.Timer(LONG, _announce)
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
-
-
 def _announce() -> None:
+    """Report a long compilation, once per process; worker processes are silent."""
     if multiprocessing.parent_process() is None and _announced.acquire(blocking=False):
         text = "Compiling for this machine, once for each kind of system (about 20 s of processor time) ..."
         print(text, file=sys.stderr, flush=True)
-
-
-@contextmanager
-def _without_garbage_collection() -> Iterator[None]:
-    """Disable garbage collection, which takes a tenth of the compile time."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()

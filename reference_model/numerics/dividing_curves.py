@@ -11,13 +11,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from reference_model.numerics.continuation import ContinuationError, Curve
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
-ComplexArray = NDArray[np.complex128]
 Function = Callable[[FloatArray], float]
 
 TURN = 0.35

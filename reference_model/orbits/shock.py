@@ -17,8 +17,6 @@ from reference_model.orbits.release_map import stick_slip_orbits
 from reference_model.steady.steady_states import self_centred_equilibria, why_no_equilibrium
 from reference_model.systems import FloatArray, PinOnDisc
 
-BoolArray = NDArray[np.bool_]
-
 DIRECTIONS = 64
 """Number of directions tried first."""
 
@@ -123,7 +121,7 @@ def _shocks(angles: float | FloatArray) -> FloatArray:
     return np.column_stack((zero, zero, np.cos(angles), np.sin(angles)))
 
 
-def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatArray) -> BoolArray:
+def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatArray) -> NDArray[np.bool_]:
     """Return which shocks, each with an angle and a size, lead to the whirl."""
     starts = rest + sizes[:, np.newaxis] * _shocks(angles)
     duration = PERIODS * 2.0 * math.pi / pin.natural_frequency

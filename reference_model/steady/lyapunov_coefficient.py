@@ -10,11 +10,11 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
 from reference_model.support import Support, require_linear_support
-from reference_model.systems import DiscOnDisc, FloatArray, checked_state
+from reference_model.systems import ComplexArray, DiscOnDisc, FloatArray, checked_state
 
 STEP = 8e-3
 """Step of the differences, in units of the distance to infinite derivatives of friction.
@@ -26,7 +26,6 @@ SIZE = 4
 """Number of components of the state (r, ṙ, rψ̇, ω − φ̇)."""
 
 Rates = Callable[[FloatArray], FloatArray]
-ComplexVector = NDArray[np.complex128]
 
 
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
@@ -92,7 +91,7 @@ def _real_cubic_coefficient(rates: Rates) -> float:
     def mixed(x: FloatArray, y: FloatArray) -> FloatArray:
         return (second(x + y) - second(x - y)) / 4.0
 
-    def bilinear(u: ComplexVector, v: ComplexVector) -> ComplexVector:
+    def bilinear(u: ComplexArray, v: ComplexArray) -> ComplexArray:
         real = mixed(u.real, v.real) - mixed(u.imag, v.imag)
         return real + 1j * (mixed(u.real, v.imag) + mixed(u.imag, v.real))
 
@@ -104,14 +103,14 @@ def _real_cubic_coefficient(rates: Rates) -> float:
             f"eigenvalue {values[which].real:g} 1/s: the eigenvalue nearest to the imaginary axis must be "
             "one of a complex pair"
         )
-    q: ComplexVector = np.asarray(vectors[:, which] / (2.0 * vectors[0, which]), dtype=np.complex128)
+    q: ComplexArray = np.asarray(vectors[:, which] / (2.0 * vectors[0, which]), dtype=np.complex128)
     p = np.linalg.inv(vectors)[which] * (2.0 * vectors[0, which])
     a, b = q.real, q.imag
     sum_ab, difference_ab, aaa, bbb = third(a + b), third(a - b), third(a), third(b)
     aab = (sum_ab - difference_ab - 2.0 * bbb) / 6.0
     abb = (sum_ab + difference_ab - 2.0 * aaa) / 6.0
-    mean: ComplexVector = np.asarray(np.linalg.solve(matrix, bilinear(q, q.conj())), dtype=np.complex128)
+    mean: ComplexArray = np.asarray(np.linalg.solve(matrix, bilinear(q, q.conj())), dtype=np.complex128)
     shifted = 2j * values[which].imag * np.eye(SIZE) - matrix
-    double: ComplexVector = np.asarray(np.linalg.solve(shifted, bilinear(q, q)), dtype=np.complex128)
+    double: ComplexArray = np.asarray(np.linalg.solve(shifted, bilinear(q, q)), dtype=np.complex128)
     cubic = aaa + abb + 1j * (aab + bbb) - 2.0 * bilinear(q, mean) + bilinear(q.conj(), double)
     return float((p @ cubic).real / 2.0)

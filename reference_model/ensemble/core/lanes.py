@@ -7,14 +7,16 @@ a flag, which scalar code handles. Results are the same bit by bit in every lane
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
-from reference_model.ensemble.core.records import LANES
+from reference_model.ensemble.core.records import LANES, Record, Row
+from reference_model.ensemble.core.recurrence import Measures, Window
 from reference_model.ensemble.end_states import HANDED_OVER, UNDECIDED, Results
+from reference_model.ensemble.task import Task
 from reference_model.systems import FloatArray
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
@@ -28,60 +30,69 @@ MANY = 40.0
 SMALLEST_STEP = 1e-13
 
 
-class _Lanes(Protocol):
-    """The motion ``now`` and after the ``trial`` step, and a flag that is positive at an event."""
+class Lanes(Record):
+    """All lanes; subclasses add the motion ``now`` and after the ``trial`` step, and the ``law``.
 
-    now: Any
-    trial: Any
-    flag: FloatArray
+    ``due`` is the time of the next check, ``watch`` the degree of watching, ``flag`` positive at an event, and
+    ``short`` the number of successive short steps.
+    """
+
+    tolerance: Row
+    due: Row
+    watch: Row
+    flag: Row
+    steps: Row
+    short: Row
 
 
-Lanes = TypeVar("Lanes", bound=_Lanes)
-Memory = TypeVar("Memory")
-Task = TypeVar("Task")
-Settings = TypeVar("Settings")
-Kind = TypeVar("Kind")
+class Memory(Record):
+    """Scalar data of a lane.
 
+    ``length`` and ``rate`` are the unit of length in m and the inverse unit of time in 1/s, ``tick`` is the time
+    between checks, ``span`` the proposed implicit step. ``checkpoints`` have been taken, and ``passed`` of the
+    requested times passed.
+    """
 
-Load = Callable[[Lanes, Memory, int, int, Task, Settings], bool]
-"""Writes the start of a trajectory to a lane's trial; returns whether it has ended."""
-Advance = Callable[[Lanes, Kind], None]
-"""Makes a trial step in all lanes, or in the first one only."""
-HandleFlag = Callable[[Lanes, Memory, int, Settings], bool]
-"""Handles a lane's flag, may change the trial, and returns whether the trajectory has ended."""
-Store = Callable[[Lanes, Memory, int, Results], None]
-"""Writes the result of a trajectory."""
-Idle = Callable[[Lanes, int], None]
-"""Fills a lane with harmless numbers."""
+    number: int
+    length: float
+    rate: float
+    end: int
+    found: Measures
+    tick: float
+    window: Window
+    span: float
+    checkpoints: int
+    passed: int
 
 
 @written_out
 def run(
-    load: Load[Lanes, Memory, Task, Settings],
-    advance: Advance[Lanes, Kind],
-    advance_alone: Advance[Lanes, Kind],
-    handle_flag: HandleFlag[Lanes, Memory, Settings],
-    store: Store[Lanes, Memory],
-    idle: Idle[Lanes],
+    load: Callable[..., bool],
+    advance: Callable[..., None],
+    advance_alone: Callable[..., None],
+    handle_flag: Callable[..., bool],
+    store: Callable[..., None],
     record: NDArray[Any],
     memory: NDArray[Any],
     first: int,
     last: int,
-    kind: Kind,
+    kind: Any,
     task: Task,
-    settings: Settings,
+    settings: Any,
     results: Results,
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
     ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), their scalar data; both are zeros.
+
+    ``load`` writes the start of a trajectory to a lane's trial. ``advance`` makes a trial step in all lanes,
+    ``advance_alone`` in the first one only. ``handle_flag`` handles a lane's flag and may change the trial. ``load``
+    and ``handle_flag`` return whether the trajectory has ended. ``store`` writes its result.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
     active = 0
-    for lane in range(LANES):
-        idle(record[0], lane)
     while True:
         # Again in every round, because the lanes exist only while something refers to the array.
         lanes = record[0]
@@ -95,8 +106,7 @@ def run(
                     busy[lane] = False
                     active -= 1
                 if number == last:
-                    idle(lanes, lane)
-                    break
+                    break  # the numbers of the lane do not matter any more
                 ended = load(lanes, memory[lane], lane, number, task, settings)
                 busy[lane] = True
                 active += 1
@@ -117,7 +127,7 @@ def row_of(values: FloatArray, number: int) -> FloatArray:
 
 
 @scalar
-def store_end(lanes: Any, memory: Any, lane: int, results: Results) -> None:
+def store_end(lanes: Any, memory: Memory, lane: int, results: Results) -> None:
     number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
     results.times[number] = lanes.trial.state.time[lane] / rate
     results.ends[number], results.steps[number] = memory.end, int(lanes.steps[lane])
@@ -129,5 +139,5 @@ def store_end(lanes: Any, memory: Any, lane: int, results: Results) -> None:
 
 
 @scalar
-def _accept(lanes: _Lanes) -> None:
+def _accept(lanes: Any) -> None:
     lanes.now = lanes.trial

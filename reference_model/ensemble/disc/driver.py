@@ -1,7 +1,7 @@
 """Ensembles of discs and single discs; the plain reference follows contact points that rest until all slip."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.ensemble.core.checkpoints import Checkpoints, empty_checkpoints
+from reference_model.ensemble.core.lanes import row_of
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
-from reference_model.ensemble.disc.kernel import PARAMETERS, run_points, run_rings
+from reference_model.ensemble.disc.kernel import run_points, run_rings
 from reference_model.ensemble.disc.lanes import DiscSettings
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
 from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Results
 from reference_model.ensemble.recording import ROUNDED, Recording
-from reference_model.ensemble.task import Task, in_chunks, parameter_table
+from reference_model.ensemble.task import OF_DISC, Task, in_chunks, parameter_table
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -26,29 +27,21 @@ LEAST_SLIP = 0.1
 
 
 def simulate_discs(
-    disc: DiscOnDisc,
-    starts: FloatArray,
-    duration: float,
-    tolerance: float,
-    varied: Mapping[str, FloatArray],
-    early_end: bool,
-    n: int,
-    threads: int,
+    disc: DiscOnDisc, task: Task, tolerance: float, early_end: bool, varied: bool, threads: int
 ) -> Results:
     settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
-    task = Task(parameter_table(disc, PARAMETERS, varied), starts, np.full(1, duration))
-    return _run_through(disc, task, n, settings, varied, tolerance, threads)
+    return _run_through(disc, task, settings, tolerance, threads)
 
 
 def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
-    table = parameter_table(disc, PARAMETERS)
+    table = parameter_table(disc)
     settings = _settings(disc, tolerance, False, no_regions())
 
     def one(task: Task, checkpoints: Checkpoints) -> Results:
-        return _run(task, 1, settings._replace(checkpoints=checkpoints))
+        return _run(task, settings._replace(checkpoints=checkpoints))
 
     def many(task: Task, _: Checkpoints) -> Results:
-        return _run_through(disc, task, len(task.starts), settings, {}, tolerance)
+        return _run_through(disc, task, settings, tolerance)
 
     t = 0.0
     while t < recording.duration:
@@ -68,33 +61,29 @@ def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDAr
     return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
 
 
-def _run(task: Task, n: int, settings: DiscSettings, threads: int = 1) -> Results:
-    kernel, results = run_points if settings.around else run_rings, Results.empty(n, DiscOnDisc.state_size)
-    in_chunks(lambda first, last: kernel(task, settings, results, first, last), n, threads)
+def _run(task: Task, settings: DiscSettings, threads: int = 1) -> Results:
+    kernel = run_points if settings.around else run_rings
+    results = Results.empty(task.size, DiscOnDisc.state_size)
+    in_chunks(lambda first, last: kernel(task, settings, results, first, last), task.size, threads)
     return results
 
 
 def _run_through(
-    disc: DiscOnDisc,
-    task: Task,
-    n: int,
-    settings: DiscSettings,
-    varied: Mapping[str, FloatArray],
-    tolerance: float,
-    threads: int = 1,
+    disc: DiscOnDisc, task: Task, settings: DiscSettings, tolerance: float, threads: int = 1
 ) -> Results:
-    results = _run(task, n, settings, threads)
+    results = _run(task, settings, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
     handed = np.flatnonzero(results.ends == HANDED_OVER)
     while handed.size:
-        for i in handed:
-            one = replace(disc, **{name: float(values[i]) for name, values in varied.items()})  # type: ignore[arg-type]
-            _continue_until_slip(one, results, int(i), float(durations[i]), tolerance, settings.early)
+        for i in handed.tolist():
+            parameters: dict[str, Any] = dict(zip(OF_DISC, row_of(task.parameters, i).tolist(), strict=True))
+            one = replace(disc, **parameters)
+            _continue_until_slip(one, results, i, float(durations[i]), tolerance, settings.early)
         handed = handed[results.ends[handed] == HANDED_OVER]
         if handed.size:
-            table = task.parameters[handed] if varied else task.parameters
+            table = task.parameters[handed] if len(task.parameters) > 1 else task.parameters
             rest = Task(table, results.states[handed], durations[handed] - results.times[handed])
-            again = _run(rest, len(handed), settings, threads)
+            again = _run(rest, settings, threads)
             again.times[:] += results.times[handed]
             again.steps[:] += results.steps[handed]
             for name, values in again._asdict().items():

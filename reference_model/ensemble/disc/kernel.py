@@ -22,7 +22,6 @@ from reference_model.ensemble.disc.lanes import (
     Edge,
     Rates,
     advance_with,
-    idle,
     put_slipping,
     put_state,
     take_checkpoint,
@@ -36,18 +35,13 @@ from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(DiscLanes), layout(DiscMemory)
 
-PARAMETERS = (
-    "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "contact_radius",
-    "shaft_damping", "shaft_speed",
-)  # fmt: skip
-
 WATCHED_STEP = 1e-3
 """Step below which points of a disc may be about to rest."""
 
 
 @inlined
 def _scaled_law(parameters: FloatArray, around: Tuple, length: float, rate: float) -> DiscLaw:
-    mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = parameters
+    mass, stiffness, damping, force, omega, offset, inertia, radius, shaft, shaft_speed = parameters
     kappa, speed = math.sqrt(inertia / mass), length * rate
     friction = force / mass / (speed * rate)
     return DiscLaw(
@@ -78,7 +72,7 @@ def load_with(
     rates: Rates,
 ) -> bool:
     parameters = row_of(task.parameters, number)
-    mass, inertia, stiffness, damping, force, omega, offset, _, shaft, _ = parameters
+    mass, stiffness, damping, force, omega, offset, inertia, _, shaft, _ = parameters
     x, y, angle, vx, vy, spin = row_of(task.starts, number)
     k, decay, g = math.sqrt(stiffness / mass), max(damping / mass, shaft / inertia), force / mass
     length, rate = units(k, decay, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
@@ -171,7 +165,7 @@ _load_points, _advance_points, _advance_points_alone, _handle_points = _function
 @called_from_python
 def run_rings(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     run(
-        _load_ring, _advance_rings, _advance_ring_alone, _handle_ring, store, idle,
+        _load_ring, _advance_rings, _advance_ring_alone, _handle_ring, store,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
         settings.around, task, settings, results,
     )  # fmt: skip
@@ -186,7 +180,7 @@ def run_points(task: Task, settings: DiscSettings, results: Results, first: int,
 def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Separate for the same reason as ``pin.kernel._run_pins``."""
     run(
-        _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,
+        _load_points, _advance_points, _advance_points_alone, _handle_points, store,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
         settings.around, task, settings, results,
     )  # fmt: skip

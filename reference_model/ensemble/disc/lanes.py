@@ -18,10 +18,12 @@ from reference_model.ensemble.core.lanes import (
     RIGHTMOST,
     SMALLEST_STEP,
     STIFF,
+    Lanes,
+    Memory,
 )
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import Record, Row, Rows, at, put
-from reference_model.ensemble.core.recurrence import Measures, Series, Window
+from reference_model.ensemble.core.recurrence import Measures, Series
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output
 from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, Tuple, factor_of, moved, step
 from reference_model.ensemble.disc.slip import direction, grown
@@ -49,23 +51,14 @@ class Moment(Record):
     step: Row
 
 
-class DiscLanes(Record):
-    """All lanes: the motion now and after the trial step, and the law.
-
-    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, ``due`` the next check.
-    """
+class DiscLanes(Lanes):
+    """All lanes; ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion."""
 
     now: Moment
     trial: Moment
     law: Rows[DiscLaw]
-    tolerance: Row
     usual: Row
     duration: Row
-    due: Row
-    watch: Row
-    flag: Row
-    steps: Row
-    short: Row
 
 
 Rates = Callable[[Tuple, DiscLaw], Tuple]
@@ -195,17 +188,6 @@ def flags_of(
     return flag
 
 
-@scalar
-def idle(lanes: DiscLanes, lane: int) -> None:
-    trial = lanes.trial
-    put(lanes.law, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0))
-    put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    put(trial.rates, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    trial.step[lane] = lanes.tolerance[lane] = 1.0
-    lanes.duration[lane] = lanes.due[lane] = math.inf
-    lanes.usual[lane] = lanes.watch[lane] = lanes.flag[lane] = lanes.steps[lane] = lanes.short[lane] = 0.0
-
-
 @inlined
 def law_of(lanes: DiscLanes, lane: int, around: Tuple) -> DiscLaw:
     return DiscLaw(around, *at(lanes.law, lane))
@@ -326,22 +308,12 @@ class Region(Record):
     measures: Measures
 
 
-class DiscMemory(Record):
+class DiscMemory(Memory):
     """Scalar data of a lane, with the motion at ``checks``, at the largest x (``turns``) and the largest radius."""
 
-    number: int
-    length: float
-    rate: float
-    end: int
-    found: Measures
-    tick: float
     checks: Series
     turns: Series
     peaks: Series
-    window: Window
-    span: float
-    checkpoints: int
-    passed: int
 
 
 class DiscSettings(NamedTuple):

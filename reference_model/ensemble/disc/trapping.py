@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ellipe, ellipkm1
 
-from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.records import layout
 from reference_model.ensemble.disc.lanes import Region
 from reference_model.steady.steady_states import self_centred_equilibria, whirls
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import ComplexArray, DiscOnDisc, FloatArray
 
 DIRECTIONS, LEVELS = 4000, 60
 SMALLEST, LARGEST = 1e-4, 30.0

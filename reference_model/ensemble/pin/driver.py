@@ -1,13 +1,9 @@
 """Ensembles of pins and single pins."""
 
-from collections.abc import Mapping
-
-import numpy as np
-
 from reference_model.ensemble.core.checkpoints import Checkpoints
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Results
-from reference_model.ensemble.pin.kernel import PARAMETERS, results_of, run_pins
+from reference_model.ensemble.pin.kernel import results_of, run_pins
 from reference_model.ensemble.pin.lanes import settings_of
 from reference_model.ensemble.pin.trapping import trapping_regions
 from reference_model.ensemble.recording import Recording
@@ -16,23 +12,15 @@ from reference_model.systems import FloatArray, PinOnDisc
 
 
 def simulate_pins(
-    pin: PinOnDisc,
-    starts: FloatArray,
-    duration: float,
-    tolerance: float,
-    varied: Mapping[str, FloatArray],
-    early_end: bool,
-    n: int,
-    threads: int,
+    pin: PinOnDisc, task: Task, tolerance: float, early_end: bool, varied: bool, threads: int
 ) -> Results:
     regions = None if varied else trapping_regions(pin)
-    task = Task(parameter_table(pin, PARAMETERS, varied), starts, np.full(1, duration))
-    results, local = Results.empty(n, pin.state_size), tolerance_of_steps(tolerance)
+    results, local = Results.empty(task.size, pin.state_size), tolerance_of_steps(tolerance)
 
     def run(first: int, last: int) -> None:
         run_pins(task, settings_of(local, early_end, regions=regions), results, first, last)
 
-    in_chunks(run, n, threads)
+    in_chunks(run, task.size, threads)
     return results
 
 
@@ -42,4 +30,4 @@ def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: R
     def run(task: Task, checkpoints: Checkpoints) -> Results:
         return results_of(task, settings_of(local, checkpoints=checkpoints))
 
-    recording.follow(parameter_table(pin, PARAMETERS), run, run, state, 0.0)
+    recording.follow(parameter_table(pin), run, run, state, 0.0)

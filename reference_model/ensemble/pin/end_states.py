@@ -33,7 +33,6 @@ Stick-slip
 import math
 from typing import NamedTuple
 
-from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.stepping.dense_output import size_of
@@ -46,7 +45,7 @@ from reference_model.ensemble.core.stepping.linear import (
     zeros,
 )
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
 FORM_SIZE = 10
 """Size of the upper half of a quadratic form in ξ, η, ξ'/k, η'/k."""

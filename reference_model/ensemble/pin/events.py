@@ -132,19 +132,22 @@ def check_region(
         lanes.watch[lane] = TURNS
     due = next_requested(memory, settings) if recorded(settings) else later + memory.tick
     lanes.due[lane] = min(due, memory.duration - LANDING)
-    if memory.end != UNDECIDED or not in_region(lanes, memory, lane, law):
+    if memory.end != UNDECIDED or not centres(lanes, memory, lane, law):
         return False
     lanes.watch[lane] = UNWATCHED
-    memory.end = SELF_CENTRED
-    radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
-    keep(memory, radius, radius, abs(law.disc_speed) * radius)
     return settings.early
 
 
 @scalar
-def in_region(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
+def centres(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
+    """End the motion in the trapping region of the equilibrium; return whether it is there."""
     level, z, w = memory.level, position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
-    return level > 0.0 and depth(z, w, law, memory.equilibrium, memory.form) <= level
+    if not (level > 0.0 and depth(z, w, law, memory.equilibrium, memory.form) <= level):
+        return False
+    memory.end = SELF_CENTRED
+    radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
+    keep(memory, radius, radius, abs(law.disc_speed) * radius)
+    return True
 
 
 @written_out
@@ -333,10 +336,8 @@ def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
         radius = sticking_radius(law)
         memory.end = STUCK
         keep(memory, radius, radius, 0.0)
-    if memory.end == UNDECIDED and in_region(lanes, memory, lane, law):
-        radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
-        memory.end = SELF_CENTRED
-        keep(memory, radius, radius, abs(law.disc_speed) * radius)
+    if memory.end == UNDECIDED:
+        centres(lanes, memory, lane, law)
 
 
 # --- Implicit steps in place of many short ones

@@ -23,7 +23,6 @@ from reference_model.ensemble.pin.lanes import (
     Settings,
     advance,
     advance_alone,
-    idle,
     keep,
     law_of,
     position_at,
@@ -45,9 +44,6 @@ TICK_TURNS = 4.0
 
 LAST_TICKS = 4.0
 """Number of final ticks watched in a motion without early end."""
-
-
-PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
 
 
 @written_out
@@ -144,12 +140,12 @@ def run_pins(task: Task, settings: Settings, results: Results, first: int, last:
 def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
     """Run the trajectories in a separate function, which compiles a fifth longer but runs a sixth faster."""
     run(
-        load, advance, advance_alone, handle_flag, store, idle,
+        load, advance, advance_alone, handle_flag, store,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,
     )  # fmt: skip
 
 
 def results_of(task: Task, settings: Settings) -> Results:
-    results = Results.empty(len(task.starts), PinOnDisc.state_size)
-    run_pins(task, settings, results, 0, len(task.starts))
+    results = Results.empty(task.size, PinOnDisc.state_size)
+    run_pins(task, settings, results, 0, task.size)
     return results

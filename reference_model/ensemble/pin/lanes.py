@@ -5,7 +5,6 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.checkpoints import (
     ON_THE_WAY,
     Checkpoints,
@@ -22,15 +21,17 @@ from reference_model.ensemble.core.lanes import (
     RIGHTMOST,
     SMALLEST_STEP,
     STIFF,
+    Lanes,
+    Memory,
 )
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import LANES, Record, Row, Rows, at, fill, layout, put
-from reference_model.ensemble.core.recurrence import NO_WINDOW, Measures, Series, Window, measured, see_radius
+from reference_model.ensemble.core.recurrence import NO_WINDOW, Measures, Series, measured, see_radius
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output, size_of
 from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, error_of, factor_of, moved, step
 from reference_model.ensemble.pin.end_states import FORM_SIZE
 from reference_model.ensemble.pin.slip import MOST_TERMS, pin_rates
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.systems import ComplexArray, FloatArray, PinOnDisc
 
 
 class PinState(NamedTuple):
@@ -52,24 +53,14 @@ class Moment(Record):
     step: Row
 
 
-class PinLanes(Record):
-    """All lanes: the motion now and after the trial step, and the law.
-
-    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next check, ``short`` the number
-    of successive short steps.
-    """
+class PinLanes(Lanes):
+    """All lanes; ``slow`` is the slip speed below which rest may be near."""
 
     now: Moment
     trial: Moment
     law: Rows[PinLaw]
-    tolerance: Row
     slow: Row
-    due: Row
-    watch: Row
-    flag: Row
-    steps: Row
     most_steps: Row
-    short: Row
 
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
@@ -145,17 +136,6 @@ def flags_of(
     flag += RIGHTMOST if rightmost else 0.0
     flag += EXTREME if turns & (watch >= RADII) else 0.0
     return flag
-
-
-@scalar
-def idle(lanes: PinLanes, lane: int) -> None:
-    trial = lanes.trial
-    put(lanes.law, lane, PinLaw(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
-    put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    put(trial.rates, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    trial.step[lane] = lanes.tolerance[lane] = lanes.due[lane] = 1.0
-    lanes.slow[lane] = lanes.watch[lane] = lanes.flag[lane] = lanes.steps[lane] = 0.0
-    lanes.most_steps[lane] = lanes.short[lane] = 0.0
 
 
 @scalar
@@ -267,29 +247,15 @@ class TrappingRegions(Record):
     measures: Measures
 
 
-class PinMemory(Record):
-    """Scalar data of a lane.
+class PinMemory(Memory):
+    """Scalar data of a lane, with x, y and ẏ at crossings of the section (``turns``) and radii of ``releases``."""
 
-    ``tick`` is the time between checks, ``turns`` x, y and ẏ at crossings of the section, ``releases`` the radii of
-    releases, ``span`` the proposed implicit step.
-    """
-
-    number: int
-    length: float
-    rate: float
     duration: float
-    end: int
-    found: Measures
     equilibrium: complex
     level: float
     form: Annotated[FloatArray, FORM_SIZE]
-    tick: float
     turns: Series
     releases: Series
-    window: Window
-    span: float
-    checkpoints: int
-    passed: int
 
 
 class Settings(NamedTuple):

@@ -10,11 +10,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import CREEP, PinLaw, pull
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
 Number = TypeVar("Number", np.float64, np.complex128)
 

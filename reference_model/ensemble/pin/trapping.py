@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
 from reference_model.ensemble.end_states import EndState, Results
-from reference_model.ensemble.pin.kernel import PARAMETERS, results_of
+from reference_model.ensemble.pin.kernel import results_of
 from reference_model.ensemble.pin.lanes import no_regions, settings_of
 from reference_model.ensemble.task import Task, parameter_table
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
@@ -129,7 +129,7 @@ def _on_section(crossings: FloatArray, k: float) -> FloatArray:
 def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
-    task = Task(parameter_table(pin, PARAMETERS), starts, np.full(1, duration))
+    task = Task(parameter_table(pin), starts, np.full(1, duration))
     return results_of(task, settings_of(TOLERANCE, early, once))
 
 

@@ -139,11 +139,6 @@ Leave = Callable[[list[float]], bool]
 """Takes unknowns and returns whether the motion needs another description."""
 
 
-def never(_: list[float]) -> bool:
-    """Return False: a description is never left early."""
-    return False
-
-
 FAST_AGAIN = 1.2
 """Ratio to the slow slip speed above which slip is fast again."""
 

@@ -9,14 +9,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
 from reference_model.ensemble.core.stepping.linear import complex_zeros, length_of, solve, zeros
 from reference_model.motion.slip.breakaway import MOST_ITERATIONS
 from reference_model.numerics import collocation
 from reference_model.numerics.collocation import NODES
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 LAST_TERM = np.array(collocation.FROM_START[NODES])

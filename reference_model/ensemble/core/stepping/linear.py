@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 
-from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.systems import FloatArray
+from reference_model.systems import ComplexArray, FloatArray
 
 SQUARINGS = 40
 VANISHED, GROWN = 1e-6, 1e6

@@ -6,10 +6,9 @@ from functools import reduce
 from typing import Any, TypeVar
 
 import numba
-from numba.extending import overload
 from scipy.integrate import DOP853
 
-from reference_model.ensemble.core.jit import INLINED, generated, inlined
+from reference_model.ensemble.core.jit import inlined
 from reference_model.numerics.explicit import TIGHTEST
 
 intrinsic: Any = numba.extending.intrinsic  # not fully typed
@@ -92,20 +91,6 @@ def _packed(context: Any, builder: Any, signature: Any, values: list[Any]) -> An
     return context.make_tuple(builder, signature.return_type, values)
 
 
-def squares(differences: Tuple, before: Tuple, after: Tuple) -> Tuple:
-    """Return (Σ (difference/(1 + the larger of |before| and |after|))²,)."""
-    raise NotImplementedError
-
-
-@overload(squares, jit_options=INLINED, strict=False)
-def _squares(differences: Any, before: Any, after: Any) -> Callable[..., Any]:
-    terms = [
-        f"(differences[{v}] / (1.0 + max(abs(before[{v}]), abs(after[{v}])))) ** 2"
-        for v in range(len(before))
-    ]
-    return generated("differences, before, after", [f"return ({' + '.join(terms)},)"])
-
-
 @inlined
 def step(
     rates: Callable[[Tuple, Constants], Tuple], law: Constants, y: Tuple, k1: Tuple, h: float
@@ -132,7 +117,11 @@ def step(
 @inlined
 def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
     """Return Hairer's error estimate relative to the tolerance, absolute for unknowns below 1."""
-    high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
+    high = low = 0.0
+    for v in range(len(y)):
+        size = 1.0 + max(abs(y[v]), abs(new[v]))
+        high += (fifth[v] / size) ** 2
+        low += (third[v] / size) ** 2
     return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)
 
 
