@@ -1,6 +1,6 @@
 """Fixtures of several packages, which need a browser or a C compiler.
 
-Tests of the page are deselected if there is no browser, except in CI.
+Tests of the page run only where a browser is installed; CI must have one.
 """
 
 from __future__ import annotations

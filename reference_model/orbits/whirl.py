@@ -81,7 +81,8 @@ def whirl_orbit(
     """
     require_start(system, guess, (Orbit, Whirl, type(None)), at_crossing, samples)
     if guess is None:
-        circles = whirls(centred := replace(system, offset=0.0))
+        centred = replace(system, offset=0.0)
+        circles = whirls(centred)
         if not circles:
             raise ValueError(why_no_whirl(centred))
         guess = circles[0]

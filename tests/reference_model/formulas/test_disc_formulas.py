@@ -42,9 +42,8 @@ def test_positions_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc
     expected = self_centred_equilibria(disc, ThreeTermRing(disc.contact_radius))
     assert len(found) == len(expected) == 1
     assert found[0] == pytest.approx((expected[0].x, expected[0].y, expected[0].spin), abs=1e-12)
-    assert pin_formulas.semicircle_residual(formulas.pin_of(disc), found[0].x, found[0].y) == pytest.approx(
-        0.0, abs=1e-14
-    )
+    residual = pin_formulas.semicircle_residual(formulas.pin_of(disc), found[0].x, found[0].y)
+    assert residual == pytest.approx(0.0, abs=1e-14)
 
 
 def test_parameters_25_are_two_lengths_and_a_number():
