@@ -24,7 +24,7 @@ from typing import Any, Literal
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
 from compare.report.matrix import WORST_FIRST, State
-from compare.report.numbers import error_text, value_text
+from compare.report.numbers import error_text, unbroken, value_text
 from compare.report.quotes import Nature, parts, quote
 from compare.report.results_json import read_results
 
@@ -46,6 +46,9 @@ IN_README = (
     "stability-map: upper friction_force, 3 digits",
     "drivetrain-frozen: onset at 80 N m and 12 rad/s, exudyn, rpm, 4 digits",
 )
+
+MOST_DIGITS = 7
+"""Largest number of digits on the page; ``docs/numbers.json`` contains all. Parameters are known to at most four."""
 
 FACTOR_BETWEEN_MACHINES = 10.0
 """Largest ratio of an error between machines. Rounding differs, and the choice of steps depends on it."""
@@ -103,7 +106,7 @@ def findings(numbers: Mapping[str, Number], root: Path = ROOT) -> str:
     """Return the text of docs/findings.md."""
     template = (root / "builders" / "findings.md").read_text(encoding="utf-8")
     linked = QUOTED.sub(lambda found: _linked(numbers[found[1]]), template)
-    return linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template))))
+    return unbroken(linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template)))))
 
 
 def _linked(number: Number) -> str:
@@ -129,7 +132,10 @@ def _claims(numbers: Mapping[str, Number], names: Iterable[str]) -> Iterator[str
 
 
 def _with_error(number: Number) -> str:
-    text = f"{value_text(number.value, number.error)} ± {error_text(number.error, 1)}"
+    error, shown = error_text(number.error, 1), value_text(number.value, number.error, MOST_DIGITS)
+    text = f"{shown} ± {error}"
+    if shown != value_text(number.value, number.error):  # the error is below the last digit
+        return f"{shown} {number.unit}".rstrip() + f" (numerical error {error} {number.unit}".rstrip() + ")"
     return f"{number.text if '±' in number.text else text} {number.unit}".rstrip()
 
 

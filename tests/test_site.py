@@ -48,6 +48,11 @@ def test_a_link_into_the_repository_leads_to_a_page_of_code(site, gathered):
     assert "simulate(pin" in (gathered / shown).read_text(encoding="utf-8")
 
 
+def test_numbers_stay_with_their_units_except_in_code(site):
+    page = site["_unbroken"]("At 5 m/s, `sleep 5 m`.\n```\n5 s\n```\n")
+    assert page == "At 5\N{NO-BREAK SPACE}m/s, `sleep 5 m`.\n```\n5 s\n```\n"
+
+
 def test_bars_in_docstrings_are_bars():
     escape = runpy.run_path(str(ROOT / "docs" / "site" / "conf.py"))["escape_bars"]
     lines = ["μN·v/|v|, ``a|b``::", "", "    c|d", "|e|"]

@@ -195,7 +195,10 @@ def studies_of(context: typer.Context, names: Sequence[str], level: str = "full"
 
     with refused():
         if level == "quick" and names:
-            raise ValueError(f"--level quick cannot be combined with named studies ({', '.join(names)})")
+            raise ValueError(
+                f"--level quick selects the studies, so it cannot be combined with {', '.join(names)}; omit the "
+                "names, or omit --level to measure them completely"
+            )
         found = studies(names, STUDIES if context.obj is None else context.obj)
     return tuple(study for study in found if study.quick or level == "full")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -61,6 +62,16 @@ def trimmed(value: float) -> str:
 # --- The element of a claim that decides its verdict.
 
 SPACE = "\N{NO-BREAK SPACE}"
+
+_SYMBOL = "(?:kg|rad|rpm|mm|[μm]?[ms]|N|J|W|Pa|Hz|K|°C|h|min)[²³]?"
+_BEFORE_UNIT = re.compile(
+    rf"([\d⁰¹²³⁴⁵⁶⁷⁸⁹∞](?:</data>|</a>|\]\([^)]*\))?) (%|(?:1/)?{_SYMBOL}(?:[ /·]{_SYMBOL})*)(?![\w²³/])"
+)
+
+
+def unbroken(text: str) -> str:
+    """Return ``text``, which may contain HTML or Markdown, with no-break spaces between each number and its unit and within it."""
+    return _BEFORE_UNIT.sub(lambda found: f"{found[1]}{SPACE}{found[2].replace(' ', SPACE)}", text)
 
 
 @dataclass(frozen=True)

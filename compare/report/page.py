@@ -16,7 +16,7 @@ from compare.claims.study import Study
 from compare.report import quotes
 from compare.report.at_a_glance import Glance, cases, contrast
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Matrix, Row, State, state_of
-from compare.report.numbers import answers_text, error_text, in_short, trimmed, value_text, worst
+from compare.report.numbers import answers_text, error_text, in_short, trimmed, unbroken, value_text, worst
 from compare.report.results_json import erratum_id
 from compare.run.provenance import ROOT, address_of
 from compare.run.runner import Run
@@ -35,7 +35,7 @@ def page(
     glances: tuple[Glance, ...],
 ) -> str:
     """Return the HTML of the report; ``paths`` are the claims' tables by identity."""
-    return (
+    return unbroken(
         environment()
         .get_template("index.html.j2")
         .render(

@@ -18,6 +18,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 import pages as pages_of_program
 
+from compare.report.numbers import unbroken
+
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 REPORT = ROOT / "report"
@@ -26,6 +28,7 @@ WHOLE = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "
 """Pages outside docs, with their names on the site. The site has its own start page instead of the README."""
 
 LINK = re.compile(r"\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
+CODE = re.compile(r"(^```.*?^```|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
 LANGUAGES = {".py": "python", ".c": "c", ".js": "javascript"}
 
 SECTIONS = {
@@ -75,7 +78,7 @@ def gather(folder: Path) -> None:
         if uri not in pages:
             pages[uri], sources[uri] = _text(ROOT / name), name
     linked = {path for uri, text in pages.items() for path in _outside(text, sources[uri])}
-    found = {uri: moved(text, sources[uri], uri) for uri, text in pages.items()}
+    found = {uri: _unbroken(moved(text, sources[uri], uri)) for uri, text in pages.items()}
     found["index.md"] += _navigation()
     found["latest-report.md"] = pages_of_program.report(found["latest-report.md"])
     found["cite.md"] = pages_of_program.citation(found["cite.md"])
@@ -136,6 +139,11 @@ def moved(text: str, source: str, uri: str) -> str:
         return f"]({posixpath.relpath(to, posixpath.dirname(uri) or '.')}{found[2] or ''})"
 
     return LINK.sub(replaced, text)
+
+
+def _unbroken(text: str) -> str:
+    """Return a page with no-break spaces before units, except in code."""
+    return "".join(part if i % 2 else unbroken(part) for i, part in enumerate(CODE.split(text)))
 
 
 def _navigation() -> str:

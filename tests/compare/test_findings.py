@@ -81,11 +81,16 @@ def test_readme_contains_no_other_number_and_is_short():
     assert re.findall(r".*\d.*", text) == []
 
 
+def test_digits_beyond_the_parameters_are_left_to_the_files():
+    exact = BUILDER["Number"]("3145", 3145.010028181113, 3e-10, "measured", unit="rpm")
+    assert BUILDER["_with_error"](exact) == "3145.010 rpm (numerical error 3×10⁻¹⁰ rpm)"
+
+
 def test_a_report_writes_its_numbers(root):
     BUILDER["write"](results(), root)
     assert (root / "docs" / "findings.md").read_text(encoding="utf-8") == (
         "At [0.0512](#fig05place) m, to 1.0×10⁻⁶ m.\n### fig05/place\n\nPlace.\n\n- place: 0.051235 ± 1×10⁻⁶ m\n"
-    )
+    ).replace(" m", "\N{NO-BREAK SPACE}m")
     kept = BUILDER["kept"](root)
     order = BUILDER["number_in"](results(), "fig05: order")
     assert (order.claim, order.unit) == ("fig05/order", "")

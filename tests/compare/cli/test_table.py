@@ -53,7 +53,10 @@ BAD = [
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),
     ("report pushes --data .", "--data .: no such folder, or it contains no logs like 10_90_10_…txt.xz"),
     ("report --min-conclusive -1", "min-conclusive = -1: it must lie between 0 and 1000000"),
-    ("report --level quick verdicts", "--level quick cannot be combined with named studies (verdicts)"),
+    (
+        "report --level quick verdicts",
+        "--level quick selects the studies, so it cannot be combined with verdicts; omit …",
+    ),
     ("report --output a --output b", "--output is given 2 times; give it once"),
     ("report --output ''", "--output '': it must not be empty"),
     ("report --output file/report", f"cannot write to the folder 'file/report': {NO_FOLDER}"),

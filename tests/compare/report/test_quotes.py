@@ -87,8 +87,8 @@ def test_the_page_links_each_quote_to_its_claim_and_shows_its_error(tmp_path):
     first = re.escape(
         f'<a class="quote" href="#{STUDY.name}/the-radius" title="± 1.0×10⁻⁷, one: The radius">'
     )
-    assert re.search(f"<li>It rests at {first}0.050</a> m\\.", page)
-    assert re.search(f"<p>The radius is {first}0.0500000</a> m\\.", page)
+    assert re.search(f"<li>It rests at {first}0.050</a>\\sm\\.", page)
+    assert re.search(f"<p>The radius is {first}0.0500000</a>\\sm\\.", page)
     assert f'<details class="claim" id="{STUDY.name}/the-radius"' in page
 
 

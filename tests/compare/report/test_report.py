@@ -79,7 +79,7 @@ def claims_of(page):
 
 @pytest.fixture(scope="module")
 def page(reported):
-    return (reported[1] / "index.html").read_text(encoding="utf-8")
+    return (reported[1] / "index.html").read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")
 
 
 @pytest.fixture(scope="module")

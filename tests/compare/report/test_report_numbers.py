@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from compare.report.numbers import error_text, trimmed, value_text
+from compare.report.numbers import error_text, trimmed, unbroken, value_text
 
 
 @pytest.mark.parametrize(
@@ -42,3 +42,19 @@ def test_results_have_the_digits_that_their_uncertainty_allows(value, uncertaint
 )
 def test_exact_numbers_keep_their_digits(value, text):
     assert trimmed(value) == text
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "5~%, 1.5~m/s,",
+        "(2~N~m~s/rad)",
+        "3×10⁻¹⁰~rpm",
+        "1~kg~m²",
+        "[0.05](#a)~m.",
+        "<data>2</data>~1/s<",
+        "3 mean, 4 so, 5 Nm",
+    ],
+)
+def test_a_number_stays_with_its_unit(text):
+    assert unbroken(text.replace("~", " ")) == text.replace("~", "\N{NO-BREAK SPACE}")
