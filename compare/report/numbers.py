@@ -70,7 +70,7 @@ _BEFORE_UNIT = re.compile(
 
 
 def unbroken(text: str) -> str:
-    """Return ``text``, which may contain HTML or Markdown, with no-break spaces between each number and its unit and within it."""
+    """Return ``text`` (HTML or Markdown) with no-break spaces in each unit and between it and its number."""
     return _BEFORE_UNIT.sub(lambda found: f"{found[1]}{SPACE}{found[2].replace(' ', SPACE)}", text)
 
 

@@ -12,6 +12,7 @@ import reference_model
 from compare.claims.error_estimates import refined
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine
+from compare.engines.stick import REST
 from reference_model import Phase, Trajectory, plain
 
 TIMES = np.linspace(0.0, 30.0, 7)
@@ -205,3 +206,24 @@ def test_the_error_estimate_covers_the_times_of_stick_and_release():
     assert np.max(np.abs(found.value - told(FIG5, start, ends).stick_times)) < 0.5 * found.largest
     # Creep nearly as fast as slip is not stick.
     assert mine.simulate(FIG5, start, ends, tolerance=2e-8).stick_phases == ()
+
+
+@pytest.mark.parametrize(("growth", "sticks"), [(0.0, True), (1.0, False)])
+def test_creep_of_a_coarse_engine_that_grows_up_to_release_is_not_called_stick(growth, sticks):
+    """A block slides at 1 m/s, creeps from 10 to 20 s at about a tenth of REST, and slides again."""
+    creep = 0.1 * REST
+
+    def speed(t):
+        creeping = creep * (1.0 + growth * (t - 15.0) / 10.0)
+        return np.maximum(np.maximum(1.0 - 0.1 * t, creeping), 0.1 * (t - 20.0))
+
+    def slow(system, start, times, *, tolerance):
+        fine = np.linspace(0.0, 30.0, 30001)
+        travelled = np.concatenate(([0.0], np.cumsum(0.5e-3 * (speed(fine)[1:] + speed(fine)[:-1]))))
+        states = np.zeros((len(times), 4))
+        states[:, 0], states[:, 2] = np.interp(times, fine, travelled), speed(np.asarray(times))
+        return Trajectory(system, np.array(times), states)
+
+    block = replace(BLOCK, stiffness=1e-6)
+    found = engine(slow, phases=False).simulate(block, (0.0, 0.0, 1.0, 0.0), TIMES, tolerance=1e-7)
+    assert bool(found.stick_phases) == sticks

@@ -129,3 +129,19 @@ def test_rows_at_the_same_time_do_not_overflow():
         for step in range(-2, 20):
             check.look(1e-3 * max(0, step), np.array([24.0 * step]))
         check.warn()
+
+
+@pytest.mark.parametrize(("later", "told"), [(1.0, 1), (1e3, 0)])
+def test_a_jump_is_noise_if_powers_become_much_larger_after_it(later, told, monkeypatch):
+    monkeypatch.setattr("exudyn_models.solver.jumps.TOGETHER", 8)
+    mbs = new_model()
+    add_energy_balance(mbs, gains={}, losses={"brake": lambda mbs, t: 0.0})
+    mbs.Assemble()
+    check = JumpCheck(mbs)
+    for step in range(40):
+        power = float(step > 10) + (later - 1.0) * np.clip((step - 20) / 20.0, 0.0, 1.0)
+        check.look(1e-3 * step, np.array([power]))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        check.warn()
+    assert len(caught) == told

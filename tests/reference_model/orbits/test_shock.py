@@ -43,3 +43,9 @@ def test_pin_without_a_smallest_shock_is_refused(monkeypatch):
     monkeypatch.setattr("reference_model.orbits.shock.stick_slip_orbits", lambda pin, tolerance: ())
     with pytest.raises(ValueError, match="no saddle-type stick-slip orbit"):
         smallest_shock(FIG5)
+
+
+def test_a_boundary_below_the_smallest_tried_shock_is_found(shock, monkeypatch):
+    """In most directions the smallest of these two shocks already leads to the whirl."""
+    monkeypatch.setattr("reference_model.orbits.shock.SIZES", np.array([0.5, 1.0]))
+    assert smallest_shock(FIG5).speed == pytest.approx(shock.speed, rel=1e-6)

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -35,3 +37,12 @@ def test_an_order_of_invalid_errors_is_nan(bad):
     errors = np.array([1e-2, 1e-3, bad, 1e-5, 1e-6])
     assert np.isnan(observed_exponent(errors, errors, next_term=1.0)[0])
     assert np.isnan(extrapolated_order(errors, 0.0)[0])
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 4.0])
+def test_the_error_of_an_extrapolated_order_covers_the_noise_of_the_errors(order):
+    errors = 0.5 ** (order * np.arange(4))
+    noise = 0.02 * errors[-1]
+    for signs in itertools.product((-1.0, 1.0), repeat=4):
+        found, numerical, _ = extrapolated_order(errors + noise * np.array(signs), noise)
+        assert abs(found - order) <= numerical
