@@ -7,6 +7,7 @@ and ``0f3a.csv`` its answer.
 import functools
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from numpy.typing import ArrayLike
 from compare.engines.engine import KINDS, Engine, UnsupportedSystemError
 from compare.engines.outside.json_lines import question
 from compare.engines.registry import Scheme, register_scheme
+from compare.output.outside_text import printable
 from reference_model.systems import COLUMNS, FloatArray, System
 from reference_model.trajectory import Trajectory
 
@@ -71,10 +73,12 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
         raise UnsupportedSystemError(f"{place} is missing") from None
     except OSError as error:
         raise BadFileError(f"{place} cannot be read: {error.strerror}") from None
-    columns = ("t", *(name for name, _ in COLUMNS[type(system)]))
+    described = (("t", "s"), *COLUMNS[type(system)])
+    columns = [name for name, _ in described]
     rows = [(number, line.split(",")) for number, line in enumerate(lines, 1) if line.strip()]
+    order = list(range(len(columns)))
     if rows and not any(map(_is_number, rows[0][1])):
-        rows = rows[1:]
+        order = _order(rows.pop(0)[1], described, place)
     found = len(rows)
     if found < len(times) or (found == len(times) and len(rows[-1][1]) < len(columns)):
         whole = found - (1 if rows and len(rows[-1][1]) < len(columns) else 0)
@@ -97,7 +101,20 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
             ) from None
         if not np.isfinite(numbers[i]).all():
             raise BadFileError(f"{place}, line {number}, has a number that is not finite")
+    numbers = numbers[:, order]
     return Trajectory(system, numbers[:, 0], numbers[:, 1:])
+
+
+def _order(header: Sequence[str], columns: Sequence[tuple[str, str]], place: str) -> list[int]:
+    """Return the positions of ``columns`` (names and units) in a header that names each once, as "x" or "x [m]"."""
+    named = {form: name for name, unit in columns for form in (name, f"{name} [{unit}]")}
+    found = [named.get(word.strip(" #\"'")) for word in header]  # savetxt of NumPy writes "# t,x"
+    if sorted(map(str, found)) != sorted(name for name, _ in columns):
+        rule = ", ".join(f"{name} [{unit}]" for name, unit in columns)
+        raise BadFileError(
+            f"{place} has the header {printable(','.join(header))[:80]!r}: it must name {rule}, in any order"
+        )
+    return [found.index(name) for name, _ in columns]
 
 
 def files_engine(text: str) -> Engine:
