@@ -136,8 +136,10 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
 
     ``studies`` replaces the studies of the paper in a project with its own studies and engines.
     """
-    if sys.stdout is None:  # the caller closed it
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:  # the caller closed it, so the next open file would receive its number
+            setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
+            os.set_inheritable(getattr(sys, name).fileno(), True)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # file names may be undecodable
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))

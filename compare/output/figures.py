@@ -102,10 +102,10 @@ _OTHERS = (
 
 @contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply ``PAPER`` to figures drawn and saved inside."""
-    import matplotlib
+    """Apply ``PAPER`` to figures drawn and saved inside, and matplotlib's defaults, not the user's settings."""
+    from matplotlib import style
 
-    with matplotlib.rc_context(PAPER):
+    with style.context(["default", PAPER]):
         yield
 
 

@@ -74,6 +74,17 @@ def test_help_needs_no_heavy_library_and_only_a_sweep_needs_the_extra():
     ]
 
 
+@pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")
+@pytest.mark.parametrize(
+    ("arguments", "status"), [("simulate pin --until 1", 0), ("simulate pin --until x", 2)]
+)
+def test_closed_input_and_error_streams_change_no_status(arguments, status, tmp_path):
+    output = tmp_path / "motion.csv"
+    command = f"exec {REAL[0]} -m compare.cli {arguments} --output {output} <&- 2>&-"
+    done = subprocess.run(["sh", "-c", command], env=environment(), capture_output=True, encoding="utf-8")
+    assert (done.returncode, done.stdout, output.exists()) == (status, "", status == 0)
+
+
 SIMULATE = ("--engine", "fake_studies:straight", "--samples", "3", "--until", "2")
 UNITS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "spin": "rad/s"}
 OF_PIN = {name: unit for name, unit in UNITS.items() if name not in ("angle", "spin")}
