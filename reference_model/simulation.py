@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 from reference_model.contact.contact_law import Contact
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
-from reference_model.systems import System
+from reference_model.systems import System, require_flag
 from reference_model.trajectory import Trajectory
 
 
@@ -43,7 +43,9 @@ def simulate(
         first run on a machine compiles it. None: use it if it supports the system.
 
     """
-    if compiled is None:
+    if compiled is not None:
+        require_flag("compiled", compiled)
+    else:
         from reference_model.ensemble.simulate import is_supported
 
         compiled = contact is None and is_supported(system)

@@ -1,6 +1,8 @@
 """The paper's systems: frozen, validated parameters in SI units."""
 
 import math
+import re
+import reprlib
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -154,8 +156,7 @@ class DiscOnDisc(_SupportedMass):
         super().__post_init__()
         if self.contact_points is not None:
             points = finite_number("contact_points", self.contact_points)
-            whole = not isinstance(self.contact_points, bool) and points == int(points)
-            if not (whole and 3 <= points <= MOST_POINTS):
+            if not (points.is_integer() and 3 <= points <= MOST_POINTS):
                 raise ValueError(
                     f"contact_points = {self.contact_points}: it must be a whole number from 3 to {MOST_POINTS}, or "
                     "None for the continuous ring; use PinOnDisc for a single point"
@@ -199,17 +200,67 @@ ANGLE = 2
 """Index of the angle in the state of a disc."""
 
 
-def finite_number(name: str, value: Any) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` unless it is finite."""
+def shown(value: Any) -> str:
+    """Return ``value`` as a short line for a message."""
+    return " ".join(reprlib.repr(value).split())
+
+
+def finite_numbers(name: str, values: Any) -> FloatArray:
+    """Return ``values``, a number or an array of any shape, as an array of floats.
+
+    Numbers are integers and floats of Python or NumPy, also within lists and in objects that convert themselves to
+    an array, such as a series of pandas. Raises ``ValueError`` for everything else (truth values, text, dates,
+    complex numbers, masked elements, numbers with a unit, rows of unequal length), and unless all are finite.
+    """
+    said = f"{name} = {shown(values)}"
+    if np.ma.is_masked(values):
+        raise ValueError(f"{said}: it must not contain masked elements; fill or remove them")
+    if not isinstance(values, (int, float)) and (
+        unit := getattr(values, "units", getattr(values, "unit", None))
+    ):
+        raise ValueError(f"{said}: it has the unit {unit}; convert it to SI units and pass the plain numbers")
+    array = np.asarray(values, dtype=None if hasattr(values, "__array__") else object)
+    kinds = {type(value) for value in array.flat} if array.dtype == object else {array.dtype.type}
+    if not all(issubclass(kind, _NUMBERS) and not issubclass(kind, _NO_NUMBERS) for kind in kinds):
+        rule = "contain only numbers, in rows of equal length" if array.ndim else "be a number"
+        raise ValueError(f"{said}: it must {rule}")
     try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: it must be a number") from None
+        result = np.array(array, dtype=float, order="C")
     except OverflowError:  # an integer larger than any float
-        number = math.inf
-    if not math.isfinite(number):
-        raise ValueError(f"{name} = {number}: it must be finite")
-    return number
+        raise ValueError(f"{said}: it must be finite, at most {np.finfo(float).max:.2g} in size") from None
+    if not np.all(np.isfinite(result)):
+        place = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
+        where = f"[{', '.join(map(str, place))}]" if place else ""
+        raise ValueError(f"{name}{where} = {result[place]}: it must be finite")
+    return result
+
+
+_NUMBERS, _NO_NUMBERS = (int, float, np.integer, np.floating), (bool, np.timedelta64)
+
+
+def finite_number(name: str, value: Any) -> float:
+    """Return ``value``, an integer or a float, as a float; raise ``ValueError`` unless it is finite."""
+    result = finite_numbers(name, value)
+    if result.ndim > 0:
+        raise ValueError(f"{name} = {shown(value)}: it must be a single number, not an array")
+    return float(result)
+
+
+def number_in_text(name: str, text: str) -> float:
+    """Return the number that ``text`` contains, such as "-1.5e3"; raise ``ValueError`` unless it is finite."""
+    words = text.strip().lower()
+    if not _NUMERAL.fullmatch(words):
+        raise ValueError(f"{name} = {text!r}: it must be a number, such as 0.5 or -1e-3")
+    return finite_number(name, float(words))
+
+
+_NUMERAL = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf|infinity)", re.ASCII)
+
+
+def require_flag(name: str, value: Any) -> None:
+    """Raise ``ValueError`` unless ``value`` is True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} = {shown(value)}: it must be True or False")
 
 
 def _checked_parameter(name: str, value: Any, unit: str, least: float) -> float:
@@ -233,10 +284,16 @@ def positive_number(name: str, value: Any, unit: str) -> float:
 
 def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
     """Raise ``ValueError`` unless ``value`` is an integer from ``least`` to ``most``."""
-    whole = isinstance(value, Integral) and not isinstance(value, bool)
+    whole = isinstance(value, Integral) and not isinstance(value, _NO_NUMBERS)
     if not (whole and least <= value <= most):
         allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
-        raise ValueError(f"{name} = {value!r}: it must be a whole number {allowed}")
+        raise ValueError(f"{name} = {shown(value)}: it must be a whole number {allowed}")
+
+
+def require_callable(name: str, value: Any) -> None:
+    """Raise ``ValueError`` unless ``value`` can be called."""
+    if not callable(value):
+        raise ValueError(f"{name} = {shown(value)}: it must be a function")
 
 
 Place: TypeAlias = tuple[float, float, float]
@@ -285,13 +342,12 @@ def require_system(system: System, *allowed: type[System]) -> None:
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
     """Return ``initial_state`` as an array, shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
     require_system(system)
-    state = _float_array("initial_state", initial_state)
+    state = finite_numbers("initial_state", initial_state)
     if state.shape != (system.state_size,):
         raise ValueError(
             f"initial_state has shape {state.shape}: "
             f"{type(system).__name__} takes {system.state_size} numbers"
         )
-    _require_finite("initial_state", state)
     if np.any(abs(state) > LARGEST_STATE):
         i = int(np.argmax(abs(state)))
         raise ValueError(
@@ -303,10 +359,9 @@ def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
 
 def checked_times(times: ArrayLike) -> FloatArray:
     """Return ``times`` in s, shape (n,); raise ``ValueError`` unless they increase."""
-    result = _float_array("times", times)
+    result = finite_numbers("times", times)
     if result.ndim != 1 or result.size == 0:
         raise ValueError(f"times has shape {result.shape}: it must be a list of at least one time")
-    _require_finite("times", result)
     steps = np.diff(result)
     if np.any(steps <= 0.0):
         i = int(np.argmax(steps <= 0.0))
@@ -322,18 +377,3 @@ def checked_tolerance(tolerance: float) -> float:
     if not SMALLEST_TOLERANCE <= number <= 1e-2:
         raise ValueError(f"tolerance = {number:g}: it must lie between {SMALLEST_TOLERANCE} and 1e-2")
     return number
-
-
-def _float_array(name: str, values: ArrayLike) -> FloatArray:
-    try:
-        return np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {values!r}: it must be a list of numbers") from None
-    except OverflowError:
-        raise ValueError(f"{name} holds an integer too large for a float: it must be finite") from None
-
-
-def _require_finite(name: str, values: FloatArray) -> None:
-    if not np.all(np.isfinite(values)):
-        i = int(np.argmin(np.isfinite(values)))
-        raise ValueError(f"{name}[{i}] = {values[i]}: it must be finite")

@@ -121,9 +121,9 @@ def _export(name: str, unit: Unit) -> None:
 
 
 def _numbers(changes: dict[str, str]) -> dict[str, float]:
-    from reference_model.systems import finite_number
+    from reference_model.systems import number_in_text
 
     words = {"true": "1", "false": "0"}
     return {
-        name: finite_number(name, words.get(value.strip().lower(), value)) for name, value in changes.items()
+        name: number_in_text(name, words.get(value.strip().lower(), value)) for name, value in changes.items()
     }

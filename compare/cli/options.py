@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import MISSING, fields, replace
@@ -70,17 +71,16 @@ def tolerance_of(text: str) -> float:
 
 
 def _number(name: str, text: str) -> float:
-    from reference_model.systems import finite_number
+    from reference_model.systems import number_in_text
 
-    return finite_number(name, text)
+    return number_in_text(name, str(text))  # typer also parses defaults
 
 
 def count(name: str, text: str, least: int, most: int) -> int:
     """Return ``text`` as an integer; raise ``ValueError`` unless it lies between ``least`` and ``most``."""
-    try:
-        value = int(text)
-    except ValueError:
-        raise ValueError(f"{name} = {text!r}: it must be a whole number") from None
+    if not re.fullmatch(r"[+-]?\d+", str(text).strip(), re.ASCII):
+        raise ValueError(f"{name} = {text!r}: it must be a whole number")
+    value = int(text)
     if not least <= value <= most:
         raise ValueError(f"{name} = {value}: it must lie between {least} and {most}")
     return value
@@ -157,9 +157,11 @@ def with_options(
 
 def changed(system: System, settings: Sequence[str]) -> System:
     """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid one."""
-    changes: dict[str, Any] = dict(changes_of(settings, [field.name for field in fields(system)]))
-    if str(changes.get("contact_points", "")).strip().lower() == "none":
-        changes["contact_points"] = None
+    given = changes_of(settings, [field.name for field in fields(system)])
+    changes: dict[str, Any] = {
+        name: None if name == "contact_points" and text.strip().lower() == "none" else _number(name, text)
+        for name, text in given.items()
+    }
     return replace(system, **changes)
 
 

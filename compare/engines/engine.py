@@ -16,7 +16,7 @@ from compare.engines.units import InOtherUnits
 from compare.engines.unread import unread
 from compare.output.outside_text import one_line, one_of
 from reference_model.support import Support
-from reference_model.systems import FloatArray, PinOnDisc, System, finite_number
+from reference_model.systems import FloatArray, PinOnDisc, System, finite_number, require_flag
 from reference_model.trajectory import Trajectory
 
 KINDS = {
@@ -96,8 +96,7 @@ class Engine:
         for kind in self.kinds:
             one_of("kind of system", kind, KINDS)
         for name in ("sticks", "nonlinear", "phases"):
-            if not isinstance(getattr(self, name), bool):
-                raise ValueError(f"{name} = {getattr(self, name)!r}: it must be True or False")
+            require_flag(name, getattr(self, name))
         object.__setattr__(self, "precision", finite_number("precision", self.precision))
         if not 0.0 <= self.precision <= LEAST_PRECISE:
             raise ValueError(f"precision = {self.precision:g}: it must lie between 0 and {LEAST_PRECISE:g}")

@@ -13,7 +13,7 @@ import numpy as np
 
 from compare.engines import one_of
 from compare.sweep.quantities import parameters, units
-from reference_model.systems import FloatArray, System, finite_number
+from reference_model.systems import FloatArray, System, number_in_text
 
 LEAST_UNIFORM = 2.0**-54
 """Replacement for the random number 0, whose normal quantile is infinite."""
@@ -99,7 +99,7 @@ class Uncertain:
         if not found:
             raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION with one of {in_words()}")
         name = one_of("parameter or component", found[1], units(system))
-        numbers = tuple(finite_number(name, number) for number in found[3].split(","))
+        numbers = tuple(number_in_text(name, number) for number in found[3].split(","))
         uncertain = cls(name, found[2], numbers)
         uncertain.check(system)
         return uncertain

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compare.engines import one_of
-from reference_model.systems import COLUMNS, FloatArray, System, finite_number
+from reference_model.systems import COLUMNS, FloatArray, System, number_in_text
 
 # --- Names, units and symbols
 
@@ -114,12 +114,11 @@ class Axis:
         if len(parts) != 3:
             raise ValueError(f"axis {text!r}: write it as NAME=LOW:HIGH:POINTS")
         name = one_of(kind, name.strip(), names)
-        low, high = (finite_number(name, part) for part in parts[:2])
-        try:
-            points = int(parts[2])
-        except ValueError:
-            raise ValueError(f"axis {text!r}: the number of points must be a whole number") from None
-        return cls(name, low, high, points)
+        low, high = (number_in_text(name, part) for part in parts[:2])
+        points = number_in_text(name, parts[2])
+        if not points.is_integer():
+            raise ValueError(f"axis {text!r}: the number of points must be a whole number")
+        return cls(name, low, high, int(points))
 
     @property
     def values(self) -> FloatArray:

@@ -284,12 +284,12 @@ def checked_contact(
         contact_points = 1
     if contact_points is None:
         return radius, None, epsilon
-    if isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1:
+    if not (number := finite_number("contact_points", contact_points)).is_integer() or number < 1:
         raise ValueError(
             f"contact_points = {contact_points}: it must be a whole number >= 1, a list of (x, y, share), or None "
             "for the continuous ring"
         )
-    return radius, ring_places(radius, int(contact_points) if radius > 0.0 else 1), epsilon
+    return radius, ring_places(radius, int(number) if radius > 0.0 else 1), epsilon
 
 
 def _checked_annulus(

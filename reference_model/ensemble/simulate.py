@@ -3,7 +3,6 @@
 import os
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +14,9 @@ from reference_model.systems import (
     PinOnDisc,
     System,
     checked_tolerance,
+    finite_numbers,
     positive_number,
+    require_flag,
     require_system,
     require_whole,
 )
@@ -24,6 +25,10 @@ UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
 
 MOST_POINTS = 24
 """Largest number of contact points: their sum is unrolled, which takes long to compile for more."""
+
+
+MOST_THREADS = 1024
+"""Limit of ``threads``; more than the processors have no use."""
 
 
 def simulate_ensemble(
@@ -69,7 +74,8 @@ def simulate_ensemble(
     tolerance = checked_tolerance(tolerance)
     if threads is None:
         threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    require_whole("threads", threads, least=1)
+    require_whole("threads", threads, least=1, most=MOST_THREADS)
+    require_flag("early_end", early_end)
 
     task = Task(parameter_table(system, varied), starts, np.full(1, duration))
     # Each driver loads its own compiled code.
@@ -105,7 +111,7 @@ def is_supported(system: System) -> bool:
 
 
 def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
-    starts = np.atleast_2d(_numbers("initial_states", initial_states))
+    starts = np.atleast_2d(finite_numbers("initial_states", initial_states))
     if starts.ndim != 2 or starts.shape[1] != system.state_size or len(starts) == 0:
         raise ValueError(
             f"initial_states has shape {starts.shape}: {type(system).__name__} takes {system.state_size} numbers a "
@@ -120,24 +126,13 @@ def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArr
         raise ValueError(
             f"parameters: {name!r} cannot vary between trajectories; choose from {', '.join(allowed)}"
         )
-    array = _numbers(name, values)
+    array = finite_numbers(name, values)
     if array.ndim != 1 or len(array) == 0:
         raise ValueError(
             f"parameters: {name} has shape {array.shape}: it must be a list with one number per trajectory"
         )
     for value in (array.min(), array.max()):
         replace(system, **{name: float(value)})  # type: ignore[arg-type]  # raises for invalid values
-    return array
-
-
-def _numbers(name: str, values: Any) -> FloatArray:
-    try:
-        array = np.array(values, dtype=float, order="C")
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must contain numbers only, in rows of equal length") from None
-    if not np.all(np.isfinite(array)):
-        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise ValueError(f"{name}[{', '.join(map(str, where))}] = {array[where]}: it must be finite")
     return array
 
 

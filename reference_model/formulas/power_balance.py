@@ -72,6 +72,8 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
     sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` for a single time.
     """
+    if not isinstance(trajectory, Trajectory):
+        raise ValueError(f"trajectory = {trajectory!r}: it must be a Trajectory, such as simulate() returns")
     if len(trajectory.times) < 2:
         raise ValueError("times has one entry: a power balance needs at least two")
     body = trajectory.system

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from reference_model.numerics.continuation import Curve
 from reference_model.numerics.dividing_curves import dividing_curves
 from reference_model.orbits.release_map import JUMP, ROUGH, Release, ReleaseMap, StickSlipOrbit
-from reference_model.systems import FloatArray, checked_state, finite_number, require_whole
+from reference_model.systems import FloatArray, checked_state, finite_numbers, require_whole
 
 COMPONENTS = ("x", "y", "vx", "vy")
 
@@ -186,11 +186,11 @@ def _checked_places(components: tuple[str, str]) -> list[int]:
 def _checked_ranges(
     components: tuple[str, str], ranges: Sequence[tuple[float, float]]
 ) -> tuple[FloatArray, FloatArray]:
-    if len(ranges) != 2 or any(len(limits) != 2 for limits in ranges):
+    limits = finite_numbers("ranges", ranges)
+    if limits.shape != (2, 2):
         raise ValueError(f"ranges = {ranges!r}: they must be two pairs of numbers")
-    for name, limits in zip(components, ranges, strict=True):
-        first, last = (finite_number(f"range of {name}", limit) for limit in limits)
+    for name, (first, last) in zip(components, limits.tolist(), strict=True):
         if not first < last:
             raise ValueError(f"range of {name} = {first:g} to {last:g}: it must increase")
-    low, high = np.array(ranges, dtype=float).T
+    low, high = limits.T
     return low, high

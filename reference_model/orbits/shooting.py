@@ -26,7 +26,9 @@ from reference_model.systems import (
     FloatArray,
     System,
     checked_state,
+    checked_tolerance,
     finite_number,
+    require_callable,
     require_system,
     require_whole,
 )
@@ -67,6 +69,10 @@ COLLAPSED = 1e-6
 """Smallest size relative to the guess, below which the pin has collapsed onto the axis."""
 
 
+MOST_NOISE = 1e-2
+"""Largest relative noise of the states that still leaves an orbit to be found."""
+
+
 @dataclass(frozen=True)
 class ShootingProblem:
     """The return map of an engine and its derivatives for the unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
@@ -78,6 +84,12 @@ class ShootingProblem:
     system: System
     tolerance: float
     precision: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_callable("simulate", self.simulate)
+        checked_tolerance(self.tolerance)
+        if not 0.0 <= finite_number("precision", self.precision) <= MOST_NOISE:
+            raise ValueError(f"precision = {self.precision:g}: it must lie between 0 and {MOST_NOISE:g}")
 
     @property
     def converged(self) -> float:

@@ -239,7 +239,7 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
 
 
 def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...]:
-    from reference_model.systems import finite_number
+    from reference_model.systems import number_in_text
 
     state = dict(zip(names, STARTS[system], strict=True))
     for part in filter(None, text.split(",")):
@@ -249,7 +249,7 @@ def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...
         name = one_of("component", name.strip(), names)
         if _names_of(text).count(name) > 1:
             raise ValueError(f"--start {text!r}: {name} is given more than once")
-        state[name] = finite_number(name, value)
+        state[name] = number_in_text(name, value)
     return tuple(state.values())
 
 

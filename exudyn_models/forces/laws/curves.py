@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_models.forces.jit import compiled
 from exudyn_models.forces.laws.calls import number_at
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, finite_numbers
 
 ROUNDING = 0.01
 """Rounding of the edge of ``peak_over_sliding``, which limits its slope to 50 times that of a linear fall."""
@@ -60,14 +60,11 @@ def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> fl
 
 def _checked_table(name: str, table: Sequence[Sequence[float]]) -> tuple[Any, Any]:
     rule = "it must be rows [slip speed in m/s, coefficient >= 0], the first at 0 m/s"
-    try:
-        rows = np.array(table, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {table!r}: {rule}") from None
+    rows = finite_numbers(name, table)
     if rows.ndim != 2 or rows.shape[1:] != (2,) or len(rows) < 1 or rows[0, 0] != 0.0:
         raise ValueError(f"{name} = {rows.tolist()}: {rule}")
-    if not np.isfinite(rows).all() or rows[:, 1].min() < 0.0:
-        raise ValueError(f"{name} = {rows.tolist()}: all numbers must be finite and >= 0")
+    if rows[:, 1].min() < 0.0:
+        raise ValueError(f"{name} = {rows.tolist()}: all numbers must be >= 0")
     if (np.diff(rows[:, 0]) <= 0.0).any():
         raise ValueError(f"{name} = {rows.tolist()}: slip speeds must increase")
     return rows[:, 0], rows[:, 1]

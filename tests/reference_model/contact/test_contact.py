@@ -19,7 +19,7 @@ SIX = replace(FIG11, contact_points=6)
 def test_parameters_of_a_system_select_its_contact_law():
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5)
     assert contact_of(pin) == Pin()
-    assert contact_of(FIG11) == isotropic_contact_of(FIG11, None, "whirls") == Ring("0.12") == RING
+    assert contact_of(FIG11) == isotropic_contact_of(FIG11, None, "whirls") == Ring(0.12) == RING
     assert contact_of(SIX) == POINTS
     assert isotropic_contact_of(SIX, EXPANSION, "whirls") == EXPANSION
 

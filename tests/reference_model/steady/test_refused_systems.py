@@ -111,7 +111,7 @@ ORBITS = [
             ("components", ("x", "x"), "they must be two of x, y, vx, vy"),
             ("components", ("x", "spin"), "they must be two of x, y, vx, vy"),
             ("ranges", ((0.0, 0.1), (0.2, 0.2)), r"range of vx = 0\.2 to 0\.2: it must increase"),
-            ("ranges", ((0.0, math.nan), (0.2, 0.3)), "range of x = nan: it must be finite"),
+            ("ranges", ((0.0, math.nan), (0.2, 0.3)), r"ranges\[0, 1\] = nan: it must be finite"),
             ("ranges", ((0.0, 0.1),), "two pairs of numbers"),
             ("others", (0.0, 0.0), "initial_state has shape"),
             ("cells", 1, "cells = 1: it must be a whole number >= 2"),
