@@ -122,7 +122,7 @@ def test_only_regular_files_of_limited_size_are_read(file):
 )
 def test_only_finite_numbers_and_flat_values_are_read(text, file):
     file.write_bytes(text.encode().replace(b"\\xff", b"\xff"))
-    with pytest.raises(ValueError, match="finite|nested|decode|Expecting"):
+    with pytest.raises(ValueError, match=r"finite|nested|decode|Expecting"):
         read_json(file)
 
 
