@@ -93,10 +93,15 @@ def read_json(path: Path) -> Any:
     Raises ``OSError`` if the file cannot be read, and ``ValueError`` for other text and infinite numbers.
     """
     try:
-        content = json.loads(read_file(path), parse_float=_finite, parse_constant=_finite)
-        return all_printable(content)
+        numbers = {"parse_int": _whole, "parse_float": _finite, "parse_constant": _finite}
+        return all_printable(json.loads(read_file(path), **numbers))
     except RecursionError:
         raise ValueError("its brackets are nested too deeply") from None
+
+
+def _whole(text: str) -> int:
+    _finite(text)
+    return int(text)
 
 
 def _finite(text: str) -> float:
