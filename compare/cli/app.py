@@ -6,8 +6,10 @@ Exudyn, matplotlib) themselves.
 
 from __future__ import annotations
 
+import codecs
 import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -136,10 +138,14 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
 
     ``studies`` replaces the studies of the paper in a project with its own studies and engines.
     """
-    if sys.stdout is None:  # the caller closed it
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # file names may be undecodable
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # the caller closed it
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
+        if isinstance(stream := getattr(sys, name), io.TextIOWrapper):
+            unset = codecs.lookup(stream.encoding).name == "ascii"  # no locale, such as in a container
+            stream.reconfigure(encoding="utf-8" if unset else None, errors="backslashreplace")
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:  # end like Ctrl-C, which removes temporary files
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
 
 
