@@ -1,16 +1,21 @@
 """Files are replaced atomically, even if writing fails."""
 
+import builtins
 import errno
+import itertools
 import os
+import shutil
 import stat
 import subprocess
 import sys
+import zipfile
 
 import pytest
 
 from compare.cli import app as cli
 from compare.cli.trajectory_files import WRITERS
 from compare.output.text_files import LOCK, check_writable, locked, read_file, read_json, replacing
+from fmu_models import archive
 
 OLD = "old\n"
 
@@ -155,3 +160,45 @@ def test_a_half_written_motion_leaves_the_older_file_or_none(
         assert capsys.readouterr().err == sentence.format(path=str(path))
     assert file.read_text() == OLD
     assert alone(file)
+
+
+CALLS = ((builtins, "open"), (os, "replace"), (shutil, "copymode"), (zipfile.ZipFile, "write"))
+WRITERS_OF_FILES = {
+    "pin.csv": ["simulate", "pin", "--until", "1", "--samples", "3"],
+    "pin.fmu": ["export-fmu", "pin"],
+}
+
+
+@pytest.mark.usefixtures("in_this_process")
+@pytest.mark.parametrize("name", WRITERS_OF_FILES)
+def test_a_fault_of_the_disk_at_any_call_leaves_the_older_file(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(archive, "compiler", lambda: None)
+    path = tmp_path / name
+    path.write_text(OLD)
+
+    def counted(function):
+        def call(*arguments, **options):
+            nonlocal left
+            below = str(tmp_path) in map(os.path.dirname, filter(None, map(str, arguments[:1])))
+            left -= below or function.__name__ in ("replace", "write")
+            if left == 0:
+                left = -1
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return function(*arguments, **options)
+
+        return call
+
+    for n in itertools.count(1):
+        left = n
+        with monkeypatch.context() as patch:
+            for place, function in CALLS:
+                patch.setattr(place, function, counted(getattr(place, function)))
+            code = cli.status([*WRITERS_OF_FILES[name], "--output", str(path)])
+        if left > 0:
+            break
+        assert code != 0, capsys.readouterr()
+        assert path.read_text() == OLD
+        assert alone(path)
+    assert code == 0
+    assert n > 2
+    assert path.read_bytes() != OLD.encode()
