@@ -93,7 +93,7 @@ def read_json(path: Path) -> Any:
     Raises ``OSError`` if the file cannot be read, and ``ValueError`` for other text and infinite numbers.
     """
     try:
-        numbers = {"parse_int": _whole, "parse_float": _finite, "parse_constant": _finite}
+        numbers: dict[str, Any] = {"parse_int": _whole, "parse_float": _finite, "parse_constant": _finite}
         return all_printable(json.loads(read_file(path), **numbers))
     except RecursionError:
         raise ValueError("its brackets are nested too deeply") from None

@@ -86,7 +86,7 @@ def compiled_for(
 
 @contextmanager
 def _whole_files(folder: Path, name: str) -> Iterator[None]:
-    """Delete damaged files of a function, because numba executes what it loads without a check."""
+    """Delete the damaged files of a function, which numba would execute."""
     kept = folder / f"{name}.sha256"
     try:
         known = set(kept.read_text(encoding="utf-8").splitlines())
