@@ -47,10 +47,7 @@ from compare.sweep.quantities import RESULTS, components
 
 SMALL = 1_000_000  # smallest number of trajectories of a finished store that remains a folder
 MOST_NAMED = 10
-EACH, LEAST_ROOM = (
-    300,
-    100_000_000,
-)  # most bytes of an unpacked archive per trajectory or file, and in addition
+EACH, LEAST_ROOM = 300, 100_000_000  # most bytes of an archive per trajectory or file, and in addition
 FILES = 20  # most files of a chunk
 ROUND = "round-{}"
 
