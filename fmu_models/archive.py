@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import secrets
 import shutil
 import subprocess
 import sys
@@ -120,8 +121,21 @@ def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
         if not remark:
             library = folder / "binaries" / machine / f"{model.name}{ending}"
             compile_library([folder / "sources" / one for one in sources], library)
-        with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        _replace(Path(os.path.realpath(file)), folder)
+    return Exported(file, "" if remark else machine, remark)
+
+
+def _replace(file: Path, folder: Path) -> None:
+    """Replace a file by the archive of a folder; an error leaves the old file."""
+    part = file.with_name(f".{secrets.token_hex(8)}.part")
+    try:
+        with open(part, "xb") as stream, zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
             for path in sorted(folder.rglob("*")):
                 if path.is_file():
                     archive.write(path, path.relative_to(folder).as_posix())
-    return Exported(file, "" if remark else machine, remark)
+        if file.exists():
+            shutil.copymode(file, part)
+        os.replace(part, file)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise

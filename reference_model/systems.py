@@ -18,6 +18,8 @@ ComplexArray = NDArray[np.complex128]
 MOST_POINTS = 1000
 """Largest number of contact points; a continuous ring is cheaper than more."""
 
+MOST_COUNT = 1_000_000
+"""Largest number of samples and other parts, because more would exhaust the memory."""
 
 LEAST, MOST = 1e-50, 1e50
 """Smallest positive parameter, and largest size of any: products of several then stay finite."""
@@ -282,12 +284,11 @@ def positive_number(name: str, value: Any, unit: str) -> float:
     return number
 
 
-def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
+def require_whole(name: str, value: int, *, least: int, most: int = MOST_COUNT) -> None:
     """Raise ``ValueError`` unless ``value`` is an integer from ``least`` to ``most``."""
     whole = isinstance(value, Integral) and not isinstance(value, _NO_NUMBERS)
     if not (whole and least <= value <= most):
-        allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
-        raise ValueError(f"{name} = {shown(value)}: it must be a whole number {allowed}")
+        raise ValueError(f"{name} = {shown(value)}: it must be a whole number >= {least} and <= {most}")
 
 
 def require_callable(name: str, value: Any) -> None:

@@ -64,7 +64,11 @@ def _value(kind: Any, content: Any) -> Any:
         return tuple(_value(get_args(kind)[0], item) for item in content)
     if get_origin(kind) is np.ndarray:
         return np.array(content, dtype=float)
-    return float(content) if kind is float else content
+    if kind is float:
+        return float(content)
+    if isinstance(kind, type) and type(content) is not kind:
+        raise TypeError(f"{content!r} is not of type {kind.__name__}")
+    return content
 
 
 def _dataclasses(kind: Any) -> dict[str, type[Any]]:

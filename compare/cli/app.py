@@ -6,8 +6,10 @@ Exudyn, matplotlib) themselves.
 
 from __future__ import annotations
 
+import codecs
 import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -140,8 +142,12 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
         if getattr(sys, name) is None:  # the caller closed it, so the next open file would receive its number
             setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
             os.set_inheritable(getattr(sys, name).fileno(), True)
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # file names may be undecodable
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            unset = codecs.lookup(stream.encoding).name == "ascii"  # no locale, such as in a container
+            stream.reconfigure(encoding="utf-8" if unset else None, errors="backslashreplace")
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:  # end like Ctrl-C, which removes temporary files
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
 
 

@@ -7,7 +7,7 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
 from typer.core import TyperCommand
@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 
 FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, NOTHING_MEASURED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+
+HELD = ExitStack()
+"""Folders that the running command writes, see ``check_folder``."""
 
 
 class BadInputError(Exception):
@@ -55,7 +59,8 @@ class Command(TyperCommand):
     def invoke(self, ctx: Any) -> Any:
         """Run the command; turn Ctrl-C into ``InterruptedByUserError``."""
         try:
-            return super().invoke(ctx)
+            with HELD:
+                return super().invoke(ctx)
         except KeyboardInterrupt:
             raise InterruptedByUserError from None
 

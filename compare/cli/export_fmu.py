@@ -7,7 +7,7 @@ from typing import Annotated, Literal, cast
 import typer
 
 from compare.cli.command import Command, EngineFailedError, refused
-from compare.cli.options import Settings, changes_of, check_file, whole, with_options
+from compare.cli.options import Settings, changes_of, check_file, unwritable, whole, with_options
 
 export_fmu = typer.Typer(rich_markup_mode=None)
 
@@ -116,6 +116,8 @@ def _export(name: str, unit: Unit) -> None:
             made = fmu_models.export(model, unit.output, cast(Literal[2, 3], unit.fmi))
         except RuntimeError as error:
             raise EngineFailedError(str(error)) from None
+        except OSError as error:
+            raise ValueError(unwritable(unit.output, error)) from None
     what = f"with its sources and a library for {made.platform}" if made.platform else made.remark
     print(f"{made.file}: {name}, FMI {unit.fmi}, {what}.")
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import inspect
 import os
 import re
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
@@ -16,9 +15,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec, TypeVa
 
 import typer
 
-from compare.cli.command import refused
+from compare.cli.command import HELD, refused
 from compare.output.outside_text import one_of
-from compare.output.text_files import check_writable
+from compare.output.text_files import check_writable, locked
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -219,10 +218,12 @@ def unwritable(path: Path, error: OSError) -> str:
 
 
 def check_folder(folder: Path) -> None:
-    """Make ``folder``; raise ``ValueError`` if it is not writable. Make this the last check of a command."""
+    """Make ``folder`` and hold it until the command ends; raise ``ValueError`` if it is not writable or is held.
+
+    Make this the last check of a command.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
+        HELD.enter_context(locked(folder))
     except OSError as error:
         raise ValueError(f"cannot write to the folder {str(folder)!r}: {error.strerror}") from None

@@ -1,20 +1,37 @@
-"""Files that are never incomplete: written under a temporary name and then renamed."""
+"""Files that are never incomplete, and folders that one process writes at a time."""
 
+import errno
+import json
+import math
 import os
+import platform
+import secrets
 import shutil
+import stat
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
+from compare.output.outside_text import all_printable
+
+with suppress(ImportError):  # on Windows
+    import fcntl
+
 PART = ".part"
+
+LOCK = ".lock"
+
+LARGEST = 1 << 28
+"""Largest size in bytes of a file that is read as a whole."""
 
 
 @contextmanager
 def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     """Yield a stream for the new contents of a file; an exception inside leaves the old contents.
 
-    Pipes and devices are written directly.
+    Several processes may replace one file at a time: the last one wins. Pipes and devices are written directly.
     """
     path = _target(path)
     text: dict[str, Any] = {} if "b" in mode else {"encoding": "utf-8", "newline": "\n"}
@@ -22,9 +39,9 @@ def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
         with open(path, mode, **text) as stream:
             yield stream
         return
-    part = path.with_name(path.name + PART)
+    part = path.with_name(f".{secrets.token_hex(8)}{PART}")
     try:
-        with open(part, mode, **text) as stream:
+        with open(part, mode.replace("w", "x"), **text) as stream:
             yield stream
         with suppress(FileNotFoundError):
             shutil.copymode(path, part)
@@ -41,16 +58,90 @@ def write_text(path: Path, text: str) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Raise ``OSError`` if a file cannot be written; change no existing file."""
+    """Raise ``OSError`` if a file cannot be written; touch nothing that exists."""
     path = _target(path)
-    if path.is_file() or path.is_dir():
-        with open(path, "ab"):
-            pass
-    if path.is_file() or not path.exists():
-        part = path.with_name(path.name + PART)
-        with open(part, "wb"):
-            pass
-        part.unlink()
+    try:
+        mode = path.stat().st_mode  # a name may be too long
+    except FileNotFoundError:
+        mode = stat.S_IFREG
+    else:
+        code = errno.EISDIR if stat.S_ISDIR(mode) else 0 if os.access(path, os.W_OK) else errno.EACCES
+        if code:
+            raise OSError(code, os.strerror(code), str(path))
+    if stat.S_ISREG(mode):
+        tempfile.TemporaryFile(dir=path.parent).close()
+
+
+def read_file(path: Path, most: int = LARGEST) -> bytes:
+    """Return the contents of a regular file; raise ``OSError`` for another one, or for more than ``most`` bytes."""
+
+    def opened(name: str, flags: int) -> int:  # opening a pipe would wait for a writer
+        return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+
+    with open(path, "rb", opener=opened) as stream:
+        if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        content = stream.read(most + 1)
+    if len(content) > most:
+        raise OSError(errno.EFBIG, f"larger than {most} bytes", str(path))
+    return content
+
+
+def read_json(path: Path) -> Any:
+    """Return the JSON value in a file, with printable texts.
+
+    Raises ``OSError`` if the file cannot be read, and ``ValueError`` for other text and infinite numbers.
+    """
+    try:
+        numbers: dict[str, Any] = {"parse_int": _whole, "parse_float": _finite, "parse_constant": _finite}
+        return all_printable(json.loads(read_file(path), **numbers))
+    except RecursionError:
+        raise ValueError("its brackets are nested too deeply") from None
+
+
+def _whole(text: str) -> int:
+    _finite(text)
+    return int(text)
+
+
+def _finite(text: str) -> float:
+    if not math.isfinite(number := float(text)):
+        raise ValueError(f"{text} is not a finite number")
+    return number
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold a folder in this context, at most until the process ends.
+
+    Raises ``BlockingIOError`` with the process that holds it. File systems without locks do not protect the folder.
+    """
+    path = folder / LOCK
+    while True:
+        with open(path, "a+", encoding="utf-8", opener=_not_a_link) as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                file.seek(0)
+                holder = file.read(100) or "another process"
+                reason = f"{holder} is writing to it; wait until it ends, or choose another folder"
+                raise BlockingIOError(error.errno, reason, str(path)) from None
+            except (NameError, OSError):
+                pass
+            if not (path.exists() and os.path.samestat(os.fstat(file.fileno()), path.stat())):
+                continue  # the last holder has just removed it
+            try:
+                file.truncate(0)
+                print(f"process {os.getpid()} on {platform.node()}", end="", file=file, flush=True)
+                yield
+            finally:
+                with suppress(OSError):
+                    path.unlink()
+            return
+
+
+def _not_a_link(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0), 0o666)
 
 
 def _target(path: Path) -> Path:

@@ -10,8 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from compare.claims.claim import THEORY
-from compare.output.outside_text import all_printable
-from compare.output.text_files import write_text
+from compare.output.text_files import read_json, write_text
 from compare.report.matrix import WORST_FIRST, State
 from compare.report.numbers import error_text, value_text
 from reference_model.systems import FloatArray
@@ -184,7 +183,7 @@ def read_baseline(path: Path) -> frozenset[Key]:
     Raises ``ValueError`` for an invalid file.
     """
     try:
-        content = all_printable(json.loads(path.read_text(encoding="utf-8")))
+        content = read_json(path)
         if (content["format"], content["version"]) == (FORMAT, VERSION):
             return frozenset((str(one["claim"]), str(one["engine"])) for one in content["known"])
     except OSError as error:

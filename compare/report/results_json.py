@@ -6,13 +6,11 @@ tables, which ``read_results`` adds.
 
 import csv
 import io
-import json
 import lzma
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict
-from importlib.resources import files
 from itertools import count, cycle, repeat
 from pathlib import Path
 from typing import Any
@@ -24,7 +22,8 @@ from compare.claims.claim import EVIDENCE, Claim
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.prose import slug
 from compare.claims.study import Study
-from compare.output.outside_text import all_printable, printable
+from compare.output.outside_text import printable, reason_of
+from compare.output.text_files import LARGEST, read_file, read_json
 from compare.report.at_a_glance import Glance
 from compare.report.matrix import (
     VERDICTS,
@@ -37,6 +36,7 @@ from compare.report.matrix import (
 )
 from compare.report.numbers import Element, worst
 from compare.report.quotes import filled
+from compare.report.schema import faults, schema
 from compare.run.runner import Run
 from compare.run.store import Drawing
 from compare.run.workers import Failure
@@ -108,10 +108,16 @@ def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         for claim in study["claims"]:
             if not (folder / claim["arrays"]).resolve().is_relative_to(folder.resolve()):
                 raise ValueError(f"the table {claim['arrays']!r} is not in the folder of the report")
-            if claim["arrays"] not in tables:
-                tables[claim["arrays"]] = _read(folder / claim["arrays"])
-            rows = tables[claim["arrays"]].get((claim["engine"], str(claim["measurement"])), [])
-            claims.append(claim | _arrays(rows, claim))
+            path = folder / claim["arrays"]
+            try:
+                if claim["arrays"] not in tables:
+                    tables[claim["arrays"]] = _read(path)
+                rows = tables[claim["arrays"]].get((claim["engine"], str(claim["measurement"])), [])
+                claims.append(claim | _arrays(rows, claim))
+            except OSError:
+                raise
+            except Exception as error:  # a damaged table may raise anything
+                raise ValueError(f"the table {str(path)!r} is damaged: {reason_of(error)}") from None
         studies.append(study | {"claims": claims})
     return {**results, "studies": studies}
 
@@ -123,8 +129,8 @@ def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str
 
 
 def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
-    raw = path.read_bytes()
-    text = (lzma.decompress(raw) if path.suffix == ".xz" else raw).decode()
+    raw = read_file(path)
+    text = (lzma.LZMADecompressor().decompress(raw, LARGEST) if path.suffix == ".xz" else raw).decode()
     found: dict[tuple[str, str], list[dict[str, str]]] = {}
     for row in csv.DictReader(io.StringIO(printable(text, sys.maxsize))):
         found.setdefault((row["engine"], row["measurement"]), []).append(row)
@@ -134,7 +140,7 @@ def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
 def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, Any]:
     if len(rows) != int(np.prod(claim["shape"], dtype=int)):
         raise ValueError(
-            f"{claim['arrays']} contains {len(rows)} numbers of {claim['engine']}, but results.json expects "
+            f"it contains {len(rows)} numbers of {claim['engine']}, but results.json expects "
             f"{int(np.prod(claim['shape'], dtype=int))}; they may be from different reports"
         )
 
@@ -161,31 +167,24 @@ FORMAT, VERSION = "friction-discs results", 1
 FILE = "results.json"
 
 
-def schema() -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of ``results.json``."""
-    content = files("compare.report").joinpath("results.schema.json").read_text(encoding="utf-8")
-    found: dict[str, Any] = json.loads(content)
-    return found
-
-
 def read_results(path: Path) -> dict[str, Any]:
     """Return a report's results with the arrays of each claim, from ``results.json`` or its folder.
 
-    Raises ``ValueError`` if the file is missing, is not a report or has another version.
+    Raises ``ValueError`` with the file and the place if it is missing, is not a report, or breaks its schema.
     """
     file = path / FILE if path.is_dir() else path
     try:
-        content = all_printable(json.loads(file.read_text(encoding="utf-8")))
+        content = read_json(file)
     except OSError as error:
         raise ValueError(f"cannot read {str(file)!r}: {error.strerror}") from None
-    except ValueError:
-        content = None
+    except ValueError as error:
+        raise ValueError(f"{str(file)!r} is not the results.json of a report: {error}") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise ValueError(f"{str(file)!r} is not the results.json of a report")
-    if content["version"] != VERSION:
-        raise ValueError(
-            f"{str(file)!r} has version {content['version']}, but this program reads version {VERSION}"
-        )
+    if (version := content.get("version")) != VERSION:
+        raise ValueError(f"{str(file)!r} has version {version}, but this program reads version {VERSION}")
+    if fault := next(faults(content, schema()), ""):
+        raise ValueError(f"{str(file)!r} is not a valid report: {fault}")
     try:
         return with_arrays(content, file.parent)
     except OSError as error:
@@ -198,7 +197,7 @@ def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
     """Return the duration in s of each measurement in the first report of ``folders``."""
     for folder in folders:
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-            content = json.loads((folder / FILE).read_text(encoding="utf-8"))
+            content = read_json(folder / FILE)
             return {
                 (study["name"], engine): float(unit["seconds"])
                 for study in content["studies"]

@@ -17,7 +17,7 @@ from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.study import Data, Findings, Study
 from compare.output.figures import as_svg, paper_style
 from compare.output.outside_text import all_printable
-from compare.output.text_files import replacing
+from compare.output.text_files import read_file, replacing
 from compare.run.provenance import stamp
 
 # --- Archives: contents by path, each with a checksum, valid for the version of the code that made them.
@@ -40,7 +40,7 @@ class _Archives:
         """Write an archive; without a stamp it is never found again."""
         self.folder.mkdir(parents=True, exist_ok=True)
         with replacing(self._path(key), "wb") as stream, ZipFile(stream, "w", ZIP_DEFLATED) as archive:
-            archive.comment = _comment(stamp, len(contents))
+            archive.comment = _comment(stamp, contents)
             for path, content in contents.items():
                 archive.writestr(path, content)
 
@@ -48,11 +48,11 @@ class _Archives:
         self, key: tuple[str, ...], stamp: str | None, restored: Callable[[dict[str, bytes]], Value | None]
     ) -> Value | None:
         try:
-            with ZipFile(self._path(key)) as archive:
-                paths = archive.namelist()
-                if stamp is None or archive.comment != _comment(stamp, len(paths)):
-                    return None
-                return restored({path: archive.read(path) for path in paths})
+            with ZipFile(io.BytesIO(read_file(self._path(key)))) as archive:
+                contents = {path: archive.read(path) for path in archive.namelist()}
+            return (
+                None if stamp is None or archive.comment != _comment(stamp, contents) else restored(contents)
+            )
         except Exception:  # any error of the libraries in a damaged file
             return None
 
@@ -62,9 +62,10 @@ class _Archives:
         return self.folder / f"{words}--{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.zip"
 
 
-def _comment(stamp: str | None, files: int) -> bytes:
-    """Return the archive's comment, with the number of files because a damaged archive may list fewer."""
-    return f"{stamp} {files}".encode()
+def _comment(stamp: str | None, contents: Mapping[str, bytes]) -> bytes:
+    """Return the archive's comment, which binds the stamp to the contents, so changed numbers are measured again."""
+    facts = (stamp, sorted(contents.items()))
+    return hashlib.sha256(repr(facts).encode()).hexdigest().encode()
 
 
 # --- Findings: claims as JSON, arrays as NPZ.

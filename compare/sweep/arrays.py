@@ -1,11 +1,13 @@
 """Groups of arrays in Zarr version 3, which xarray writes at once or region by region.
 
-Every piece has a crc32c checksum, so reading a damaged piece raises an error.
+Every piece has a crc32c checksum, so other readers notice a damaged piece. The seals of groups and chunks also bind
+each piece to its place in this store, so a moved or missing piece is damage.
 """
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -36,6 +38,12 @@ MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
 """Fill values by type; no result has them, because Zarr may omit a piece that contains nothing else."""
 
 CHECKSUM = "checksum"
+
+CHUNK_SEAL = "{}/end/seals/{}"
+"""File with the seal of a chunk of a round, in the folder of an array, where Zarr looks only for pieces."""
+
+SEALED = re.compile(rf"(?!round-\d+/({'|'.join(RESULTS)})/c/)[^/]+/[^/]+/({DESCRIPTION}|c(/\d+)*)")
+"""Files that the seal of their group covers: all but the chunks of rounds, which have seals of their own."""
 
 
 class Large(NamedTuple):
@@ -94,14 +102,22 @@ class Group:
         Raises :class:`StoreError` if it cannot be written, or if this is a different store.
         """
         with store_errors(self.files.url):
-            if description_of(self.files) != self.description:
-                raise StoreError(
-                    f"a worker cannot find the sweep in {self.files.url!r}; --output must be a shared folder or an "
-                    "object store"
-                )
+            self._check_there()
             dimensions = (*region, "component")
             written = xr.Dataset({name: (dimensions[: one.ndim], one) for name, one in values.items()})
-            written.to_zarr(self.files.url, mode="r+", region=region, **self._place)
+            try:
+                written.to_zarr(self.files.url, mode="r+", region=region, **self._place)
+            except Exception:
+                self._check_there()
+                raise
+
+    def _check_there(self) -> None:
+        described = self.files.read(f"{self.name}/{DESCRIPTION}")
+        if described is None or description_of(self.files) != self.description:
+            raise StoreError(
+                f"cannot find the sweep in {self.files.url!r}; it was removed, or a worker cannot reach it because "
+                "--output is not a shared folder or an object store"
+            )
 
     def array(self, name: str) -> Any:
         """Return an array without reading its values."""
@@ -114,44 +130,45 @@ class Group:
 
     def seal(self) -> None:
         """Write the checksum that makes the group valid."""
-        self.files.write({f"{self.name}/{DESCRIPTION}": _seal(self._described())})
+        self.files.write({f"{self.name}/{DESCRIPTION}": self._seal(self._sealed())})
 
-    def is_intact(self, names: Sequence[str] = ()) -> bool | None:
-        """Return whether the group matches its seal, and the arrays ``names`` (default: all) are readable.
-
-        The result is None for an unfinished group, which has no seal.
-        """
+    def is_intact(self) -> bool | None:
+        """Return whether the group matches its seal; None for an unfinished group, which has none."""
         seal = self.files.read(f"{self.name}/{DESCRIPTION}")
-        with suppress(ValueError, KeyError, TypeError):
+        with suppress(ValueError, KeyError, TypeError, RecursionError):
             if seal is None or json.loads(seal)["attributes"] == {}:
                 return None
-        described = self._described()
-        if seal != _seal(described) or not all(map(is_ours, described.values())):
-            return False
-        return all(map(self._is_whole, names or described))
+        names = self._sealed()
+        described = (self.files.read(name) or b"" for name in names if name.endswith(DESCRIPTION))
+        return all(map(is_ours, described)) and seal == self._seal(names)
 
-    def _is_whole(self, name: str) -> bool:
-        array = self.array(name)
-        pieces = range(0, array.shape[0], array.chunks[0])
-        return array.nchunks_initialized == array.nchunks and all(
-            self.can_read([name], slice(first, first + array.chunks[0])) for first in pieces
-        )
+    def _sealed(self) -> list[str]:
+        return [name for name in self.files.names(self.name) if SEALED.fullmatch(name)]
 
-    def can_read(self, names: Iterable[str], where: slice) -> bool:
-        """Return whether a part of these arrays is intact."""
+    def _seal(self, names: Iterable[str]) -> bytes:
+        digests = {name: digest_of(self.files.read(name) or b"") for name in names}
+        return group_content({CHECKSUM: checksum(digests | {"": self.description})})
+
+    def seal_chunk(self, where: slice, values: Mapping[str, NDArray[Any]]) -> None:
+        """Write the checksum that makes a chunk of a round valid, after all its arrays."""
+        chunk = where.start // self.array("end").chunks[0]
+        self.files.write({CHUNK_SEAL.format(self.name, chunk): self._chunk_seal(where, values)})
+
+    def is_whole(self, chunk: int, where: slice) -> bool:
+        """Return whether the arrays of a chunk of a round match its seal."""
         try:
-            for name in names:
-                self.array(name)[where]
+            values = {name: self.array(name)[where] for name in RESULTS}
+            return self.files.read(CHUNK_SEAL.format(self.name, chunk)) == self._chunk_seal(where, values)
         except MemoryError:
             raise
         except Exception:  # a damaged file may raise anything
             return False
-        return True
 
-    def _described(self) -> dict[str, bytes]:
-        files = {name: f"{self.name}/{name}/{DESCRIPTION}" for name in self.files.inside(self.name)}
-        found = {name: self.files.read(file) for name, file in files.items()}
-        return {name: content for name, content in found.items() if content is not None}
+    def _chunk_seal(self, where: slice, values: Mapping[str, NDArray[Any]]) -> bytes:
+        found = hashlib.blake2b(repr((self.description, self.name, where)).encode(), digest_size=8)
+        for name, result in RESULTS.items():
+            found.update(np.ascontiguousarray(values[name], result.dtype).tobytes())
+        return found.hexdigest().encode()
 
 
 @lru_cache(maxsize=64)
@@ -162,10 +179,6 @@ def _opened(group: Group, name: str) -> Any:
         return zarr.open_array(files.url, path=place, mode="r", zarr_format=3, storage_options=files.options)
 
 
-def _seal(described: Mapping[str, bytes]) -> bytes:
-    return group_content({CHECKSUM: checksum({name: digest_of(one) for name, one in described.items()})})
-
-
 def is_ours(description: bytes) -> bool:
     """Return whether sweeps write such arrays; other codecs, such as "pickle", could run foreign code."""
     try:
@@ -173,7 +186,7 @@ def is_ours(description: bytes) -> bool:
         chain = [codec["name"] for codec in found["codecs"]]
         known = found["data_type"] in TYPES and chain in CHAINS and not found.get("storage_transformers")
         return bool(known and found["zarr_format"] == 3 and found["node_type"] == "array")
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         return False
 
 
@@ -213,11 +226,8 @@ class Round:
         return slice(chunk * self.size, min((chunk + 1) * self.size, len(self.numbers)))
 
     def there(self) -> list[int]:
-        """Return the chunks with all files."""
-        files = set(self.group.files.names(self.group.name))
-        keys = {name: "{}/0" if name == "states" else "{}" for name in RESULTS}
+        """Return the chunks with a seal."""
+        files = set(self.group.files.names(f"{self.group.name}/end"))
         return [
-            chunk
-            for chunk in range(len(self.done))
-            if all(f"{self.group.name}/{name}/c/{key.format(chunk)}" in files for name, key in keys.items())
+            chunk for chunk in range(len(self.done)) if CHUNK_SEAL.format(self.group.name, chunk) in files
         ]

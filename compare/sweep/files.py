@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 import zlib
 from collections.abc import Iterator, Mapping
@@ -82,10 +83,17 @@ class Files:
                 return None
 
     def write(self, contents: Mapping[str, bytes]) -> None:
-        """Write files; overwrite existing ones."""
+        """Write files, in a folder atomically; replace existing ones."""
         system, root = self._system
         with store_errors(self.url):
-            system.pipe({f"{root}/{name}": content for name, content in contents.items()})
+            if self.options is not None:
+                system.pipe({f"{root}/{name}": content for name, content in contents.items()})
+                return
+            for name, content in contents.items():
+                path = Path(self.below(name))
+                path.parent.mkdir(parents=True, exist_ok=True)
+                with replacing(path, "wb") as stream:
+                    stream.write(content)
 
     def claim(self, name: str, content: bytes) -> None:
         """Write a new file; raise ``FileExistsError`` if it exists."""
@@ -147,28 +155,49 @@ def store_errors(url: str, action: str = "write to") -> Iterator[None]:
 # --- A small finished store as one ZIP archive, which Zarr opens directly
 
 PARTIAL = ".partial"  # suffix of files that Zarr left when its process was killed
+BLOCK = 64  # bytes that count for an empty file
+MOST_DESCRIBED = 1_000_000  # bytes of a description
 
 
 def pack(folder: Path, archive: Path) -> None:
     """Write a store to an archive, which is never incomplete."""
     with replacing(archive, "wb") as stream, ZipFile(stream, "w") as content:  # pieces are already compressed
-        for path in sorted(folder.rglob("*")):
-            if path.is_file() and path.suffix != PARTIAL:
+        for path in files_in(folder):
+            if path.suffix != PARTIAL:
                 content.write(path, path.relative_to(folder).as_posix())
 
 
-def unpacked(archive: Path) -> tempfile.TemporaryDirectory[str]:
+def files_in(folder: Path) -> list[Path]:
+    """Return all files below a folder, sorted; raise ``ValueError`` for links, pipes and devices."""
+    found = [(path, path.lstat().st_mode) for path in sorted(folder.rglob("*"))]
+    for path, mode in found:
+        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+            raise ValueError(
+                f"{str(path)!r} is a link, pipe or device; a store contains only files, so remove it"
+            )
+    return [path for path, mode in found if stat.S_ISREG(mode)]
+
+
+def member(archive: Path, name: str) -> bytes:
+    """Return a small file of an archive; raise any exception if there is none."""
+    if not archive.is_file():  # reading a pipe could take for ever
+        raise ValueError(f"{str(archive)!r} is not a file")
+    with ZipFile(archive) as content, content.open(name) as stream:
+        return stream.read(MOST_DESCRIBED)
+
+
+def unpacked(archive: Path, most: int) -> tempfile.TemporaryDirectory[str]:
     """Return a temporary folder next to the archive with its readable files.
 
-    Raises ``ValueError`` if the file is not an archive.
+    Raises ``ValueError`` if these have more than ``most`` bytes.
     """
-    folder = tempfile.TemporaryDirectory(dir=archive.parent, prefix=f"{archive.stem}-")
-    try:
-        with ZipFile(archive) as content:
-            for name in content.namelist():
-                with suppress(BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError):
-                    content.extract(name, folder.name)
-    except (BadZipFile, ValueError) as error:
-        folder.cleanup()
-        raise ValueError(str(error)) from None
+    with ZipFile(archive) as content:
+        if (size := sum(BLOCK + one.file_size for one in content.infolist())) > most:
+            raise ValueError(
+                f"{str(archive)!r} takes {size} bytes unpacked, but its description allows {most}"
+            )
+        folder = tempfile.TemporaryDirectory(dir=archive.parent, prefix=f"{archive.stem}-")
+        for name in content.namelist():
+            with suppress(BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError):
+                content.extract(name, folder.name)
     return folder

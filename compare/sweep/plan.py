@@ -3,6 +3,7 @@
 A refined basin has a round of trajectories for each step of the refinement; other plans have one round.
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,9 +14,9 @@ import numpy as np
 from compare.claims.as_json import as_json, from_json
 from compare.claims.shares import Ends, IntArray
 from compare.sweep.distributions import Uncertain, uniform_rows
-from compare.sweep.quantities import Axis, components, parameters
+from compare.sweep.quantities import Axis, components, parameters, units
 from compare.sweep.refinement import refined
-from reference_model.systems import FloatArray, System
+from reference_model.systems import FloatArray, System, checked_state, checked_tolerance
 
 Numbers: TypeAlias = range | IntArray
 
@@ -42,6 +43,20 @@ class Plan(ABC):
     duration: float
     tolerance: float
     seed: int
+
+    def __post_init__(self) -> None:
+        """Raise ``ValueError`` for values that no command allows, because a stored plan may be forged."""
+        checked_tolerance(self.tolerance)
+        of_kind = vars(self)
+        starts = of_kind.get("starts", [of_kind.get("start", ())])
+        for start in starts:
+            checked_state(self.system, start)
+        counts = [len(starts), *(of_kind.get(name, 1) for name in ("samples", "coarse"))]
+        axes = [of_kind[name] for name in ("x", "y") if name in of_kind]
+        names = {one.name for one in (*axes, *of_kind.get("varied", ()))}
+        positive = 0.0 < self.duration < math.inf and min(counts) > 0 and self.seed >= 0
+        if not positive or not names <= units(self.system).keys():
+            raise ValueError(f"no sweep has this plan: {self}")
 
     @abstractmethod
     def rounds(self) -> Rounds:

@@ -13,7 +13,7 @@ import json
 import secrets
 import shutil
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -32,12 +32,23 @@ from compare.sweep.arrays import (
     description_of,
     group_content,
 )
-from compare.sweep.files import Files, is_remote, pack, store_errors, unpacked
+from compare.sweep.files import (
+    Files,
+    StoreError,
+    files_in,
+    is_remote,
+    member,
+    pack,
+    store_errors,
+    unpacked,
+)
 from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_json
 from compare.sweep.quantities import RESULTS, components
 
 SMALL = 1_000_000  # smallest number of trajectories of a finished store that remains a folder
 MOST_NAMED = 10
+EACH, LEAST_ROOM = 300, 100_000_000  # most bytes of an archive per trajectory or file, and in addition
+FILES = 20  # most files of a chunk
 ROUND = "round-{}"
 
 
@@ -55,6 +66,11 @@ class SweepStore:
         self._whole: set[str] = set()
         self._description = description_of(files)
         self._unpacked: tempfile.TemporaryDirectory[str] | None = None
+
+    @property
+    def packed(self) -> bool:
+        """True if the store was opened from an archive, which lacks nothing unless it is damaged."""
+        return self._unpacked is not None
 
     @property
     def path(self) -> str:
@@ -83,25 +99,30 @@ class SweepStore:
     @classmethod
     def open(cls, path: str | Path) -> SweepStore:
         """Open a store; raise ``ValueError`` if it is damaged or not of a sweep."""
-        files, folder = Files.at(path), None
+        files = Files.at(path)
         archive, place = archive_of(files.url), files.url
+        packed = archive is not None and archive.exists()
+        if archive is not None and not packed:
+            files_in(Path(place))
         try:  # not with Zarr, which fails if any group is damaged
-            if archive is not None and archive.exists():
-                folder = unpacked(archive)
-                files = Files.at(folder.name)
-            content = files.read(DESCRIPTION) or b""
+            content = (member(archive, DESCRIPTION) if archive and packed else files.read(DESCRIPTION)) or b""
             attributes = json.loads(content)["attributes"]
             whole = content == group_content(attributes)
             whole = attributes.pop(CHECKSUM) == checksum(attributes) and whole
             plan = plan_from_json(all_printable(json.loads(attributes["plan"])))
             chunk, stamp = int(attributes["chunk"]), str(attributes["stamp"])
-        except (OSError, AttributeError, KeyError, TypeError, ValueError):
+            whole = whole and chunk >= 1
+        except (StoreError, MemoryError):
+            raise
+        except Exception:  # a description of a stranger may raise anything
             whole = False
         if not whole:
-            if folder is not None:
-                folder.cleanup()
-            raise ValueError(f"{place!r} is not the store of a sweep, or its description is damaged")
-        store = cls(files, plan, chunk, stamp, place)
+            raise ValueError(
+                f"{place!r} is not the store of a sweep, or its description is damaged or too old"
+            )
+        most = LEAST_ROOM + EACH * (count(plan) + FILES * (count(plan) // chunk))
+        folder = unpacked(archive, most) if archive and packed else None
+        store = cls(files if folder is None else Files.at(folder.name), plan, chunk, stamp, place)
         store._unpacked = folder
         return store
 
@@ -133,7 +154,7 @@ class SweepStore:
     def look(self, i: int, numbers: Numbers) -> Round | None:
         """Return round ``i`` of the trajectories ``numbers``, or None without an intact one."""
         group = self._group(ROUND.format(i))
-        if not self._is_intact(group, f"the description of {group.name}", ["component"]):
+        if not self._is_intact(group, f"the description of {group.name}"):
             return None
         return Round(group, numbers, self.chunk)
 
@@ -190,17 +211,17 @@ class SweepStore:
             arrays[name] = Large(dimensions, (count, *more), (self.chunk, *more), result.dtype, attributes)
         return arrays
 
-    def _is_intact(self, group: Group, called: str, names: Sequence[str] = ()) -> bool:
-        """Return whether a group matches its seal, with all pieces of the arrays ``names`` (default: of all).
+    def _is_intact(self, group: Group, called: str) -> bool:
+        """Return whether a group matches its seal.
 
-        A damaged group is added to ``broken``; a group without a seal is unfinished, not damaged.
+        A damaged group is added to ``broken``; a group without a seal is unfinished, which is damage in an archive.
         """
         if group.name in self._whole:
             return True
-        intact = group.is_intact(names)
+        intact = group.is_intact()
         if intact:
             self._whole.add(group.name)
-        elif intact is not None:
+        elif intact is not None or self.packed:
             self.broken.append(called)
         return bool(intact)
 

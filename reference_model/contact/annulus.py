@@ -63,7 +63,7 @@ class Annulus(IsotropicContact):
             raise ValueError(f"inner_radius = {inner:g} m: it must be >= 0")
         if outer <= inner:
             raise ValueError(f"outer_radius = {outer:g} m: it must be > inner_radius = {inner:g} m")
-        require_whole("rings", self.rings, least=1)
+        require_whole("rings", self.rings, least=1, most=1000)
         if self.pressure is not None and not callable(self.pressure):
             raise ValueError(
                 f"pressure = {self.pressure!r}: it must be a function of the radius, or None for a uniform one"

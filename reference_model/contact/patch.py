@@ -8,6 +8,7 @@ import numpy as np
 from reference_model.contact.points import Points
 from reference_model.systems import ComplexArray, finite_number, require_whole
 
+MOST_CORNERS = 300  # the time to cut triangles off grows with the cube
 INSIDE = np.array([[2.0, 0.5, 0.5], [0.5, 2.0, 0.5], [0.5, 0.5, 2.0]]) / 3.0
 """Weights of a triangle's corners in the three points of the rule of degree 2.
 
@@ -19,13 +20,13 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
     ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Its
-    triangles are cut into ``divisions``² >= 1 equal ones with three points each. With their longest side h the error
-    falls like h⁴ if the centre of rotation lies outside the patch, otherwise like h² on average, because friction
-    jumps.
+    triangles are cut into ``divisions``² equal ones, at most 100², with three points each. With their longest side h
+    the error falls like h⁴ if the centre of rotation lies outside the patch, otherwise like h² on average, because
+    friction jumps.
 
     Raises ``ValueError`` if a number is invalid, or the polygon has no area or intersects itself.
     """
-    require_whole("divisions", divisions, least=1)
+    require_whole("divisions", divisions, least=1, most=100)
     triangles = _triangles(_checked_corners(corners))
     pieces = np.concatenate([_divided(np.array(triangle), divisions) for triangle in triangles])
     areas = _doubled_area(*pieces.T)
@@ -42,6 +43,7 @@ def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
         raise ValueError(f"corners = {corners!r}: it must be a list of (x, y) in m") from None
     if len(around) < 3:
         raise ValueError(f"corners = {corners}: a polygon has at least three corners")
+    require_whole("number of corners", len(around), least=3, most=MOST_CORNERS)
     return around if _doubled_area(0j, np.array(around), np.roll(around, -1)).sum() > 0.0 else around[::-1]
 
 

@@ -73,10 +73,37 @@ def compiled_for(
         if gc.isenabled():  # garbage collection takes a tenth of the compile time
             gc.disable()
             stack.callback(gc.enable)
-        stack.callback(setattr, config, "CACHE_DIR", config.CACHE_DIR)
-        config.CACHE_DIR = folder
-        compiling = numba.njit(kind, error_model="numpy", nogil=nogil, cache=bool(folder))
-        return compiling(function)
+        if folder:
+            stack.callback(setattr, config, "CACHE_DIR", config.CACHE_DIR)
+            config.CACHE_DIR = folder
+            try:
+                with _whole_files(Path(folder), function.__name__):
+                    return numba.njit(kind, error_model="numpy", nogil=nogil, cache=True)(function)
+            except Exception as error:  # a full disk, or a damaged file that nobody noticed
+                _say(f"Cannot use the compiled functions in {folder!r} ({error}); compiling without them ...")
+        return numba.njit(kind, error_model="numpy", nogil=nogil)(function)
+
+
+@contextmanager
+def _whole_files(folder: Path, name: str) -> Iterator[None]:
+    """Delete the damaged files of a function, which numba would execute."""
+    kept = folder / f"{name}.sha256"
+    try:
+        known = set(kept.read_text(encoding="utf-8").splitlines())
+    except (OSError, ValueError):
+        known = set()
+    for file in folder.rglob(f"*.{name}-*.nb?"):
+        if _fingerprint(file) not in known:
+            _say(f"The file {str(file)!r} is damaged; compiling its function again ...")
+            file.unlink()
+    yield
+    new = {_fingerprint(file) for file in folder.rglob(f"*.{name}-*.nb?")}
+    if new != known:
+        kept.write_text("\n".join(sorted(new)), encoding="utf-8")
+
+
+def _fingerprint(file: Path) -> str:
+    return f"{hashlib.sha256(file.read_bytes()).hexdigest()} {file.name}"
 
 
 @cache
@@ -137,5 +164,10 @@ def _locked(lock: Path) -> Iterator[None]:
 def _announce() -> None:
     """Report a long compilation, once per process; worker processes are silent."""
     if multiprocessing.parent_process() is None and _announced.acquire(blocking=False):
-        text = "Compiling for this machine, once for each kind of system (about 20 s of processor time) ..."
-        print(text, file=sys.stderr, flush=True)
+        _say("Compiling for this machine, once for each kind of system (about 20 s of processor time) ...")
+
+
+def _say(sentence: str) -> None:
+    if sys.stderr is not None:
+        with suppress(OSError):
+            print(sentence, file=sys.stderr, flush=True)

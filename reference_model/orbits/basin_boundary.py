@@ -154,7 +154,7 @@ def basin_boundary(
     places = _checked_places(components)
     low, high = _checked_ranges(components, ranges)
     state = checked_state(orbit.system, others)
-    require_whole("cells", cells, least=2)
+    require_whole("cells", cells, least=2, most=1000)
 
     @functools.cache  # searches repeat their ends, and curves their points
     def miss(*point: float) -> float:

@@ -20,6 +20,7 @@ from compare.cli.command import (
     trajectories,
 )
 from compare.cli.options import check_folder
+from compare.output.outside_text import reason_of
 
 if TYPE_CHECKING:
     from compare.sweep.compute.executors import Executor
@@ -175,8 +176,12 @@ def redraw(place: str) -> int:
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
         try:
+            _check_writable(folder)
             _check_finished(store)
             return finish(store, folder)
+        except (LookupError, TypeError, AttributeError) as error:
+            reason = f"{type(error).__name__} {reason_of(error)}"
+            raise ValueError(f"{store.path!r} does not contain what it describes: {reason}") from None
         finally:
             store.tidy()
 

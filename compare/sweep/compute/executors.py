@@ -20,6 +20,8 @@ from compare.run.provenance import stamp
 WAIT = 3.0  # time limit in s for a scheduler to answer and to have a worker
 IN_FLIGHT = 3  # submitted tasks per thread: enough to keep it busy, and few to lose
 COUNT_INTERVAL = 1.0
+POLL = 0.01
+FROZEN, LATE = 60.0, 3.0  # a task is late after this time in s, and after this multiple of the longest one
 AT_ONCE = 2  # simultaneous tasks in this process, each on all cores
 
 
@@ -98,28 +100,46 @@ class Cluster(AbstractContextManager["Cluster"]):
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
         """Yield keys and results as they become available; another worker repeats tasks of a lost one."""
-        keys: dict[str, Hashable] = {}
-        waiting = iter(tasks)
+        sent: dict[str, tuple[Task, float]] = {}
+        waiting, longest = iter(tasks), 0.0
         running = self._dask.as_completed(with_results=True, loop=self._client.loop)
 
-        def feed() -> None:
-            for task in itertools.islice(waiting, max(0, self._room() - len(keys))):
-                future = self._client.submit(task.function, *task.arguments, pure=False)
-                keys[future.key] = task.key
-                running.add(future)
+        def send(task: Task, workers: list[str] | None = None) -> None:
+            future = self._client.submit(task.function, *task.arguments, pure=False, workers=workers)
+            sent[future.key] = task, time.monotonic()
+            running.add(future)
 
         try:
-            feed()
-            for future, result in running:
+            while True:
+                for task in itertools.islice(waiting, max(0, self._room() - len(sent))):
+                    send(task)
+                if not sent:
+                    return
+                if not running.has_ready():
+                    time.sleep(POLL)
+                    for key, workers in self._late(sent, max(FROZEN, LATE * longest)):
+                        send(sent.pop(key)[0], workers)
+                    continue
+                future, result = next(running)
+                if future.key not in sent:  # a late result
+                    continue
                 if isinstance(result, BaseException):  # the future was cancelled
                     raise result
-                yield keys.pop(future.key), result
-                feed()
+                task, since = sent.pop(future.key)
+                longest = max(longest, time.monotonic() - since)
+                yield task.key, result
         except Exception as error:
             lost = (OSError, self._dask.CancelledError, self._dask.KilledWorker)
             if isinstance(error, lost) or self._client.status != "running":
                 raise ClusterError(f"lost the cluster at {self._address}: {reason_of(error)}") from None
             raise
+
+    def _late(self, sent: dict[str, tuple[Task, float]], limit: float) -> list[tuple[str, list[str]]]:
+        """Return the tasks that take longer than ``limit`` (s), with the workers that do not have them."""
+        late = [key for key, (_, since) in sent.items() if time.monotonic() - since > limit]
+        held = self._client.processing() if late else {}
+        others = {key: [worker for worker, keys in held.items() if key not in keys] for key in late}
+        return [(key, workers) for key, workers in others.items() if workers]
 
     def _room(self) -> int:
         now = time.monotonic()

@@ -21,7 +21,7 @@ from compare.sweep.compute.results import (
 )
 from compare.sweep.compute.work import Plain, recompute, simulate_chunk
 from compare.sweep.plan import Continuation, Map, Plan
-from compare.sweep.quantities import RESULTS, components
+from compare.sweep.quantities import components
 from compare.sweep.refinement import Grid
 from compare.sweep.store import SweepStore, flags
 
@@ -84,11 +84,9 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
 
 
 def _check_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
-    tasks = (
-        Task(chunk, Group.can_read, (found.group, list(RESULTS), found.where(chunk)), True)
-        for chunk in found.there()
-    )
-    broken = []
+    there = found.there()
+    tasks = (Task(chunk, Group.is_whole, (found.group, chunk, found.where(chunk)), True) for chunk in there)
+    broken = [chunk for chunk in range(len(found.done)) if chunk not in there] if store.packed else []
     for chunk, whole in executor.run(tasks):
         found.done[chunk] = whole
         if not whole:

@@ -41,7 +41,9 @@ def simulate_chunk(
     """
     if stamp() != made_by:
         raise OtherCodeError("a worker uses a different version of the code or libraries")
-    group.write(compute(plan, numbers, threads), {"trajectory": where})
+    values = compute(plan, numbers, threads)
+    group.write(values, {"trajectory": where})
+    group.seal_chunk(where, values)
     return len(numbers)
 
 

@@ -1,14 +1,22 @@
 """Differences of two reports, and the exit status of ``friction-discs diff``."""
 
+import copy
+import functools
 import json
+import lzma
+import operator
+import os
+import shutil
 from dataclasses import replace
 
+import jsonschema
 import numpy as np
 import pytest
 from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, claim, fake, measure_verdicts
 
 from compare.claims.study import Findings
 from compare.cli.app import status
+from compare.report import results_json
 from compare.report.comparison import without_verdict
 from compare.report.write import write_report
 from compare.run.runner import run
@@ -146,3 +154,63 @@ def test_an_invalid_baseline_is_rejected(old, tmp_path, capsys, content, sentenc
         known.write_text(content, encoding="utf-8")
     assert status(["diff", str(old), str(old), "--baseline", str(known)], None) == 2
     assert sentence in capsys.readouterr().err
+
+
+def places(content, path=()):
+    """Yield the path of every value in JSON."""
+    for key, value in content.items() if isinstance(content, dict) else enumerate(content):
+        yield (*path, key)
+        if isinstance(value, dict | list):
+            yield from places(value, (*path, key))
+
+
+def test_every_damaged_value_of_a_report_is_detected(old, tmp_path, capsys):
+    file = tmp_path / "results.json"
+    shutil.copytree(old / "arrays", tmp_path / "arrays")
+    whole = json.loads((old / "results.json").read_text())
+    valid = jsonschema.Draft202012Validator(results_json.schema()).is_valid
+    for *way, last in places(whole):
+        for damage in ("missing", None, {}, -1.5, True):
+            content = copy.deepcopy(whole)
+            parent = functools.reduce(operator.getitem, way, content)
+            parent[last] = damage
+            if damage == "missing":
+                del parent[last]
+            file.write_text(json.dumps(content))
+            code, _ = told(capsys, file, old)
+            assert code == 2 or valid(content), (way, last, damage)
+    file.write_text(json.dumps(whole).replace('"agrees"', '"perhaps"'))
+    assert status(["diff", str(file), str(old)]) == 2
+    assert capsys.readouterr().err.startswith(f"{str(file)!r} is not a valid report: totals ")
+
+
+TABLES = {
+    "missing column": lambda text: text.replace("numerical_error", "error"),
+    "no number": lambda text: text.replace("0.", "zero."),
+    "cut": lambda text: text[:-30],
+    "empty": lambda text: "",
+    "pipe": None,
+}
+
+
+@pytest.mark.parametrize("damage", TABLES)
+def test_a_damaged_table_is_named(damage, old, tmp_path, capsys):
+    new = shutil.copytree(old, tmp_path / "new")
+    table = next(path for path in sorted((new / "arrays").rglob("*.csv")) if "0." in path.read_text())
+    text = table.read_text()
+    table.unlink()
+    if TABLES[damage] is None:
+        os.mkfifo(table)
+    else:
+        table.write_text(TABLES[damage](text))
+    assert status(["diff", str(old), str(new)]) == 2
+    err = capsys.readouterr().err
+    assert repr(str(table)) in err
+    assert err.count("\n") == 1
+
+
+def test_a_table_is_not_unpacked_without_a_bound(tmp_path, monkeypatch):
+    monkeypatch.setattr(results_json, "LARGEST", 1000)
+    table = tmp_path / "table.csv.xz"
+    table.write_bytes(lzma.compress(b"engine,measurement\n" + 10_000 * b"a,1\n"))
+    assert sum(map(len, results_json._read(table).values())) < 1000

@@ -41,7 +41,7 @@ def pressed(pressure):
     [
         *((lambda law=law: law(0.0), "radius = 0 m: it must be > 0") for law in (Ring, ThreeTermRing)),
         (lambda: PointsOnRing(math.nan, 6), "radius = nan: it must be finite"),
-        (lambda: PointsOnRing(0.1, 2), "points = 2: it must be a whole number from 3 to 1000"),
+        (lambda: PointsOnRing(0.1, 2), "points = 2: it must be a whole number >= 3 and <= 1000"),
         (lambda: Points(7), r"places = 7: it must be a list of \(x, y, share\)"),
         (points((0.1, 0.2), (0.3, 0.4)), r"places\[0\] = \(0\.1, 0\.2\): it must be \(x, y, share\)"),
         (points((0.1, 0.2, 0.5), (0.3, "b", 0.5)), r"places\[1\] = 'b': it must be a number"),
@@ -61,6 +61,12 @@ def pressed(pressure):
         (lambda: Annulus(0.12, 0.12), r"outer_radius = 0\.12 m: it must be > inner_radius = 0\.12 m"),
         (lambda: Annulus(-0.1, 0.12), r"inner_radius = -0\.1 m: it must be >= 0"),
         (lambda: Annulus(0.08, 0.12, 0), "rings = 0: it must be a whole number >= 1"),
+        (
+            lambda: Annulus(0.08, 0.12, 10**9),
+            "rings = 1000000000: it must be a whole number >= 1 and <= 1000",
+        ),
+        (polygon((0.0, 0.0), (1.0, 0.0), divisions=10**6), "divisions = 1000000: it must be .* <= 100"),
+        (polygon(*301 * [(0.0, 0.0)]), "number of corners = 301: it must be .* <= 300"),
         (pressed(lambda r: 0.1 - r), r"pressure\(0\.1\d* m\) = -.*: it must be >= 0"),
         (pressed(lambda r: math.nan), r"pressure\(0\.08\d* m\) = nan: it must be finite"),
         (pressed(lambda r: 0.0), "pressure = 0 everywhere"),

@@ -1,5 +1,6 @@
 """Cache of compiled functions on disk, keyed by their sources; one process compiles and the others load."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -152,3 +153,28 @@ def test_lock_is_released_by_an_exception_and_by_a_killed_process(tmp_path):
     began = time.monotonic()
     with compiled_once._locked(lock):
         assert time.monotonic() - began < 1.0
+
+
+@pytest.mark.parametrize(
+    "damaged", [lambda old: b"", lambda old: old[:-9], lambda old: old[:40] + b"?" + old[41:]]
+)
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_a_damaged_file_is_named_and_compiled_again(damaged, ending, package, capsys):
+    assert run() == (2.0, 0, 1)
+    (file,) = package.rglob(f"*.{ending}")
+    file.write_bytes(damaged(file.read_bytes()))
+    assert run()[::2] == (2.0, 1)
+    assert f"{str(file)!r} is damaged" in capsys.readouterr().err
+    assert run() == (2.0, 1, 0)
+    assert capsys.readouterr().err == ""
+
+
+def test_a_kernel_runs_without_a_cache_on_a_full_disk(package, monkeypatch, capsys):
+    def full(self, name, data):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("numba.core.caching.IndexDataCacheFile._save_data", full)
+    assert run()[0] == 2.0
+    said = capsys.readouterr().err
+    assert said.startswith(f"Cannot use the compiled functions in '{package}")
+    assert "No space left on device" in said

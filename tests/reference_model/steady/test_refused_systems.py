@@ -83,6 +83,7 @@ ORBITS = [
             ("guess", "near", "guess = 'near': it must be Orbit or Whirl or None"),
             ("guess", whirls(PIN)[0], r"shape \(4,\): DiscOnDisc takes 6 numbers"),
             ("samples", 2.5, r"samples = 2\.5: it must be a whole number >= 1"),
+            ("samples", 10**9, "samples = 1000000000: it must be a whole number >= 1 and <= 1000000"),
             ("at_crossing", math.nan, "at_crossing = nan: it must be finite"),
             ("at_crossing", "here", "at_crossing = 'here': it must be a number"),
         )

@@ -1,9 +1,11 @@
 """Messages for damaged stores, and their repair; ``test_sweep_store_states`` damages every file."""
 
 import json
+import os
 import re
 import shutil
 from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
 from long_sweeps import assert_same, content
@@ -12,6 +14,7 @@ from compare.cli import app as cli
 from compare.cli.sweep import run
 from compare.cli.sweep.run import STORE
 from compare.sweep import store
+from compare.sweep.arrays import CHECKSUM, checksum, group_content
 from compare.sweep.store import SweepStore
 
 MAP = ["sweep", "map", "pin", "--x", "offset=0:0.1:3", "--y", "mass=1:2:3", "--until", "20", "--chunk", "4"]
@@ -140,3 +143,98 @@ def test_a_small_sweep_is_one_file_that_is_repaired_if_possible(copied, whole, m
     capsys.readouterr()
     packed.write_bytes(packed.read_bytes()[:-8])
     assert_rejected_and_kept(copied, capsys)
+
+
+SWAPPED = [
+    ("round-0/states/c/0/0", "round-0/states/c/1/0"),
+    ("result/time/c/0/0/0", "result/slip_power/c/0/0/0"),
+]
+
+
+@pytest.mark.parametrize(("one", "other"), SWAPPED)
+def test_a_piece_in_another_place_is_damage(one, other, copied, whole, capsys):
+    one, other = copied / STORE / one, copied / STORE / other
+    before = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    other.write_bytes(before)
+    assert redrawn(copied) == 2
+    assert "is damaged" in capsys.readouterr().err
+    assert resumed(copied) == 0
+    assert_same(content(copied / STORE), whole[1])
+
+
+def test_a_missing_member_of_an_archive_is_replaced(copied, whole, monkeypatch, capsys):
+    monkeypatch.setattr(store, "SMALL", 10)
+    assert resumed(copied) == 0
+    packed = Path(f"{copied / STORE}.zip")
+    with ZipFile(packed) as archive:
+        names = archive.namelist()
+    for missing in ("round-0/end/c/1", "round-0/end/seals/0", "check/zarr.json", "curves/curve/c/0"):
+        with ZipFile(packed) as archive:
+            kept = {name: archive.read(name) for name in names if name != missing}
+        with ZipFile(packed, "w") as archive:
+            for name, data in kept.items():
+                archive.writestr(name, data)
+        capsys.readouterr()
+        assert resumed(copied) == 0
+        assert capsys.readouterr().err.startswith("recomputed damaged parts")
+        with ZipFile(packed) as archive:
+            assert archive.namelist() == names
+        assert_same(content(copied / STORE), whole[1])
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+@pytest.mark.parametrize(
+    "made", [lambda path: path.symlink_to("/etc/passwd"), os.mkfifo], ids=["link", "pipe"]
+)
+def test_links_and_pipes_in_a_store_are_refused(made, copied, capsys):
+    for name in ("zarr.json", "round-0/private"):
+        (copied / STORE / name).unlink(missing_ok=True)
+        made(copied / STORE / name)
+        assert (resumed(copied), redrawn(copied)) == (2, 2)
+        assert capsys.readouterr().err.count("is a link, pipe or device") == 2
+
+
+def forged(folder, **changes):
+    attributes = json.loads((folder / STORE / "zarr.json").read_text())["attributes"]
+    del attributes[CHECKSUM]
+    attributes["plan"] = json.dumps(json.loads(attributes["plan"]) | changes)
+    content = group_content(attributes | {CHECKSUM: checksum(attributes)})
+    (folder / STORE / "zarr.json").write_bytes(content)
+
+
+FORGED = [
+    {"kind": "random basin", "start": [0.1, 0.0, 0.0, 0.0], "samples": -5, "starts": None},
+    {"starts": []},
+    {"starts": [[0.1, 0.0, 0.0]]},
+    {"seed": "1"},
+    {"seed": None},
+    {"duration": "nan"},
+    {"tolerance": 1.0},
+    {"x": None},
+    {"x": {"name": "colour", "low": 0.0, "high": 1.0, "points": 3}},
+]
+
+
+@pytest.mark.parametrize("changes", FORGED)
+def test_a_forged_plan_is_rejected_in_a_sentence(changes, copied, capsys):
+    forged(copied, **changes)
+    assert_rejected_and_kept(copied, capsys)
+
+
+def test_groups_of_another_plan_are_damaged(copied, capsys):
+    forged(copied, duration=21.0)
+    assert redrawn(copied) == 2
+    assert "is damaged (check; result; curves; the description of round-0)" in capsys.readouterr().err
+
+
+def test_an_archive_is_not_unpacked_beyond_what_it_describes(copied, monkeypatch, capsys):
+    monkeypatch.setattr(store, "SMALL", 10)
+    assert resumed(copied) == 0
+    with ZipFile(f"{copied / STORE}.zip", "a", ZIP_DEFLATED) as archive:
+        archive.writestr("round-0/end/c/7", bytes(2 * store.LEAST_ROOM))
+    before = sorted(copied.iterdir())
+    capsys.readouterr()
+    assert (resumed(copied), redrawn(copied)) == (2, 2)
+    assert capsys.readouterr().err.count("but its description allows") == 2
+    assert sorted(copied.iterdir()) == before

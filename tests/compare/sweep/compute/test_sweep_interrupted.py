@@ -4,7 +4,7 @@ import resource
 import signal
 import sys
 
-from long_sweeps import CHUNKS, LONG, assert_same, content, marks, resumed
+from long_sweeps import CHUNKS, LONG, assert_same, content, marks, resumed, status_of_signalled
 from signalling_sweep import signalling_here
 
 from compare.cli import app as cli
@@ -50,3 +50,8 @@ def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_full_disk(
     now = times(tmp_path)
     assert {mark: now[mark] for mark in written} == written  # nothing was rewritten
     assert_same(content(path), undisturbed)
+
+
+def test_a_terminated_sweep_removes_its_temporary_files(tmp_path):
+    assert status_of_signalled("SIGTERM", 2, tmp_path) == 130
+    assert [path.name for path in tmp_path.iterdir()] == ["sweep.zarr"]
