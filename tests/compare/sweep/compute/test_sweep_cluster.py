@@ -168,11 +168,3 @@ def test_a_worker_with_other_code_or_store_writes_nothing(other, error, sentence
     with pytest.raises(error, match=sentence):
         run(store, Elsewhere(otherwise), silent)
     assert marks(tmp_path) == set()
-
-
-def test_chunks_of_a_frozen_worker_go_to_another_one(undisturbed, undrawn, tmp_path, monkeypatch):
-    monkeypatch.setattr("compare.sweep.store.SMALL", 0)
-    monkeypatch.setattr(executors, "FROZEN", 3.0)
-    with cluster(tmp_path, workers=2, signalled="SIGSTOP 0 1") as (address, *_):
-        assert cli.status([*LONG, *CHUNKS, "--scheduler", address, "--output", str(tmp_path)]) == 0
-    assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
