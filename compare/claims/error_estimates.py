@@ -174,7 +174,8 @@ def decided(
     began, share, note = time.perf_counter(), 1.0, ""
     answer = _answer(ask, engine)
     while engine is not None and engine.step is not None and _fails(answer, is_open):
-        if SHORTER * (time.perf_counter() - began) > LONGEST:
+        late = SHORTER * (time.perf_counter() - began) > LONGEST
+        if late and (share > 1.0 or not isinstance(answer, Exception)):  # the first call may compile
             break
         began, share = time.perf_counter(), SHORTER * share
         shorter = _answer(ask, replace(engine, step=engine.step / share))
