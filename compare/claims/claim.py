@@ -284,10 +284,8 @@ class Claim:
         """Sentence about a budget that is too small for a difference within the resolution, or ""."""
         if self.verdict is not Verdict.AGREES or self.ratio.flat[self.worst] <= 1.0:
             return ""
-        budget, difference = (
-            float(np.broadcast_to(one, self.predicted.shape).flat[self.worst])
-            for one in (self.budget.total, self.difference)
-        )
+        budget = np.broadcast_to(self.budget.total, self.predicted.shape).flat[self.worst]
+        difference = self.difference.flat[self.worst]
         return f"The error budget of {budget:.2g} was too small for the difference of {difference:.2g}."
 
 

@@ -218,9 +218,8 @@ SAFETY = 2.0
 def estimate(runs: FloatArray) -> float:
     """Return the error estimate in m of the finest of ``runs``, by Richardson's extrapolation; 0 of a single run.
 
-    If the error is C·h^p with the recorded step h = 1/``STEPS``, the change from step h to h' is C·(h^p − h'^p). The
-    fit of p makes the C of the last three changes as equal as possible. The estimate takes the larger C of
-    the last two changes, or the last change itself if the changes do not fall.
+    For an error C·h^p with the recorded step h = 1/``STEPS``, the order p fits the last three changes, and C the last
+    two. If the changes do not fall, the estimate is ``SAFETY`` times the last one.
     """
     last = runs[-4:]
     known = np.isfinite(last[1:, CHANGE])

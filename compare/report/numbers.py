@@ -95,7 +95,7 @@ def worst(claim: Claim) -> Element:
         int(np.argmax(np.where(units == unit, difference, -1.0))) for unit in dict.fromkeys(claim.units)
     )
     is_open = claim.verdict is Verdict.INCONCLUSIVE
-    decides = int(np.argmax(_numerical(claim))) if is_open else claim.worst  # NaN counts as the largest
+    decides = int(np.argmax(_numerical(claim))) if is_open else claim.worst
     return replace(_element(claim, decides), largest=tuple(_element(claim, i) for i in largest))
 
 

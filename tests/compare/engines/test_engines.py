@@ -222,14 +222,18 @@ BUFFER = np.zeros((2, 8))
     [
         np.ndarray.tolist,
         np.ndarray.astype,
-        lambda states: BUFFER[:, ::2].__setitem__(..., states) or BUFFER[:, ::2],  # a view that the next call fills
+        lambda states: (
+            BUFFER[:, ::2].__setitem__(..., states) or BUFFER[:, ::2]
+        ),  # a view that the next call fills
     ],
     ids=["lists", "integers", "reused"],
 )
 def test_states_may_be_lists_integers_and_reused_arrays(form):
     def still(system, state, times, *, tolerance):
         states = np.array([state, state])
-        return Trajectory(system, list(times), form(states, int) if form is np.ndarray.astype else form(states))
+        return Trajectory(
+            system, list(times), form(states, int) if form is np.ndarray.astype else form(states)
+        )
 
     engine = Engine("still", still)
     first, _ = (engine.simulate(FIG5, np.full(4, start), (0.0, 1.0)) for start in (1.0, 2.0))
