@@ -161,6 +161,9 @@ SHORTER = 4.0
 LONGEST = 4.0
 """Largest expected time in s of a shorter step."""
 
+MOST_SHORTER = 16.0
+"""Factor of the step beyond which no shorter one is tried if all have failed."""
+
 Answer = TypeVar("Answer")
 
 
@@ -175,7 +178,10 @@ def decided(
     answer = _answer(ask, engine)
     while engine is not None and engine.step is not None and _fails(answer, is_open):
         late = SHORTER * (time.perf_counter() - began) > LONGEST
-        if late and (share > 1.0 or not isinstance(answer, Exception)):  # the first call may compile
+        failed = isinstance(answer, Exception)
+        if (
+            (late and (share > 1.0 or not failed)) or (failed and share > MOST_SHORTER)
+        ):  # the first call may compile
             break
         began, share = time.perf_counter(), SHORTER * share
         shorter = _answer(ask, replace(engine, step=engine.step / share))

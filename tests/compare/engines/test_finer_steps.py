@@ -80,6 +80,14 @@ def test_an_inconclusive_claim_is_measured_again_with_shorter_steps(function, re
     assert (claim.verdict, claim.note) == (verdict, note)
 
 
+def test_an_engine_that_always_fails_gives_its_own_reason():
+    def fails(*motion, step):
+        raise RuntimeError(f"no result at {step:.3g} s")
+
+    with pytest.raises(RuntimeError, match=r"no result at 0\.1 s"):
+        study_of(1.0).measure(Engine("mine", fails, step=STEP))
+
+
 def test_only_a_fixed_step_is_shortened_and_only_within_the_time_limit(monkeypatch):
     def asked(engine, seconds):
         """Return the steps of an engine that leaves a claim open and needs ``seconds`` for each run."""
