@@ -179,8 +179,8 @@ def decided(
     while engine is not None and engine.step is not None and _fails(answer, is_open):
         late = SHORTER * (time.perf_counter() - began) > LONGEST
         failed = isinstance(answer, Exception)
-        if (
-            (late and (share > 1.0 or not failed)) or (failed and share > MOST_SHORTER)
+        if (late and (share > 1.0 or not failed)) or (
+            failed and share > MOST_SHORTER
         ):  # the first call may compile
             break
         began, share = time.perf_counter(), SHORTER * share
