@@ -262,8 +262,7 @@ _COUNTS = pytest.StashKey[Counts]()
 
 def _account(claim: Claim, again: str) -> str:
     """Return the deciding numbers of a claim, and the parameters and command that repeat it."""
-    from compare.claims.claim import Verdict
-    from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
+    from compare.report.numbers import answers_text, decision, error_text, in_short, value_text, worst
 
     element = worst(claim)
     repeat = {
@@ -277,7 +276,6 @@ def _account(claim: Claim, again: str) -> str:
         return _listed(first, {"claim": f"{claim.sentence} {claim.equation}".rstrip()} | repeat)
     unit = f" {element.unit}" if element.unit else ""
     allowed = f"{error_text(element.total)}{unit}"
-    differs = claim.verdict is Verdict.DIFFERS
     lines = {
         "claim": f"{claim.sentence} {claim.equation}".rstrip(),
         "predicted": f"{value_text(element.predicted, element.difference)}{unit}",
@@ -295,12 +293,7 @@ def _account(claim: Claim, again: str) -> str:
             if one.index != element.index
         ),
     }
-    first = (
-        f"differs by {error_text(element.difference)}{unit}; the error budget is {allowed}"
-        if differs
-        else f"the error budget of {allowed} is too large for a verdict"
-    )
-    return _listed(first, lines | repeat)
+    return _listed(decision(claim), lines | repeat)
 
 
 def _listed(first: str, lines: dict[str, str]) -> str:

@@ -6,8 +6,9 @@
  * A ball with locked rotations is pressed on the plate by its weight m*g = N, with a coefficient of friction of 1. The
  * plate is kinematic and rotates at the disc speed. Springs and dampers are a force that is set before each step. With
  * "shipped", everything else has the engine's defaults. Without it, bodies do not sleep, and the settings are those
- * that converge best, with reasons next to them. planck is planar and has no normal load, so friction is its joint with
- * a force limit, recommended for scenes seen from above. These adapters simulate a pin but not a disc. */
+ * that converge best, with reasons next to them. Motions that leave the plate are not supported. planck is planar and
+ * has no normal load, so friction is its joint with a force limit, recommended for scenes seen from above. These
+ * adapters simulate a pin but not a disc. */
 "use strict";
 const path = require("path");
 
@@ -65,7 +66,7 @@ const engines = {
       };
       return { state, step, close: () => world.free() };
     };
-    return { build, name: "Rapier", version: versionOf("@dimforge/rapier3d-compat") };
+    return { build, reach: PLATE[0], name: "Rapier", version: versionOf("@dimforge/rapier3d-compat") };
   },
 
   async jolt() {
@@ -116,7 +117,7 @@ const engines = {
       };
       return { state, step, close: () => J.destroy(world) };
     };
-    return { build, name: "Jolt", version: versionOf("jolt-physics") };
+    return { build, reach: PLATE[0], name: "Jolt", version: versionOf("jolt-physics") };
   },
 
   async cannon() {
@@ -168,22 +169,27 @@ const engines = {
 
 };
 
-function simulate(build, { system, state, times, step: longest }) {
+function simulate(build, reach, { system, state, times, step: longest }) {
   const world = build(system, state);
   const states = [state];
+  const outside = ([x, y]) => Math.hypot(x, y) > reach;
+  let left = outside(state);
   for (let i = 1; i < times.length; i++) {
     const steps = Math.ceil(((times[i] - times[i - 1]) / longest) * (1 - 1e-9));
-    for (let k = 0; k < steps; k++) world.step((times[i] - times[i - 1]) / steps);
+    for (let k = 0; k < steps; k++) {
+      world.step((times[i] - times[i - 1]) / steps);
+      left = left || outside(world.state());
+    }
     states.push(world.state());
   }
   world.close();
-  return { states };
+  return left ? { unsupported: `the motion leaves the plate, which ends ${reach} m from the origin` } : { states };
 }
 
-engines[process.argv[2]]().then(({ build, name, version, precision = 1e-6 }) => {
+engines[process.argv[2]]().then(({ build, name, version, reach = Infinity, precision = 1e-6 }) => {
   const greeting = { name: shipped ? `${name}, as shipped` : name, version, kinds: ["pin"], step: 2e-3, precision };
   process.stdout.write(JSON.stringify(greeting) + "\n");
   require("readline")
     .createInterface({ input: process.stdin })
-    .on("line", (line) => process.stdout.write(JSON.stringify(simulate(build, JSON.parse(line))) + "\n"));
+    .on("line", (line) => process.stdout.write(JSON.stringify(simulate(build, reach, JSON.parse(line))) + "\n"));
 });

@@ -68,3 +68,6 @@ def test_engines_from_npm_slide_as_the_reference_does_and_better_with_a_smaller_
         np.max(np.abs(engine.function(FIG5, start, times, step=h).states - exact)) for h in (8e-3, 2e-3)
     )
     assert fine < 0.4 * coarse
+    if name != "planck":
+        with pytest.raises(UnsupportedSystemError, match="leaves the plate, which ends 20 m from the origin"):
+            engine.function(FIG5, (19.0, 0.0, 30.0, 0.0), (0.0, 0.1), step=8e-3)

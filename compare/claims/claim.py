@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from reference_model.systems import FloatArray
 
@@ -70,20 +70,24 @@ GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 class ErrorBudget:
     """Difference that the errors of the engine and the formula can explain.
 
-    - ``numerical``: error in the claim's unit, estimated from the run itself. NaN, if there is no estimate, makes the
-      claim differ.
+    - ``numerical``: error in the claim's unit, estimated from the run itself; NaN if there is no estimate.
     - ``model``: size of the first neglected term of an approximation; zero for an identity.
     - ``resolution``: largest total error of a conclusive agreement. Beyond it the claim may agree to a coarser grade.
+    - ``negligible``: largest difference that does not matter; the resolution unless given.
     """
 
     numerical: FloatArray
     model: float
     resolution: float
+    negligible: float
 
-    def __init__(self, numerical: ArrayLike, *, resolution: float, model: float = 0.0) -> None:
+    def __init__(
+        self, numerical: ArrayLike, *, resolution: float, model: float = 0.0, negligible: float = math.inf
+    ) -> None:
         object.__setattr__(self, "numerical", np.asarray(numerical, dtype=float))
         object.__setattr__(self, "model", float(model))
         object.__setattr__(self, "resolution", float(resolution))
+        object.__setattr__(self, "negligible", min(float(negligible), self.resolution))
         if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
             raise ValueError(
                 f"error budget: numerical and model errors must be >= 0 (model = {self.model:g}), "
@@ -216,7 +220,7 @@ class Claim:
     @cached_property
     def worst(self) -> int:
         """Flat index of the element with the largest ratio or, among equals, difference."""
-        ratio = self.ratio
+        ratio = np.where(self._wrong, self.ratio, -1.0) if np.any(self._wrong) else self.ratio
         nearest = np.where(ratio == np.max(ratio), self.difference, -1.0)
         return int(np.argmax(np.nan_to_num(nearest, nan=np.inf, posinf=np.inf)))
 
@@ -226,11 +230,14 @@ class Claim:
 
         It is infinite for orders and answers, which lack a scale.
         """
+        return self._relative(self.budget.total)
+
+    def _relative(self, errors: FloatArray) -> float:
         if self.answers or self.kind == "order":
             return math.inf
-        total, size = np.broadcast_arrays(self.budget.total, self._size())
+        errors, size = np.broadcast_arrays(errors, self._size())
         with np.errstate(divide="ignore", invalid="ignore"):
-            relative = np.where(total == 0.0, 0.0, total / size)
+            relative = np.where(errors == 0.0, 0.0, errors / size)
         return float(np.max(np.nan_to_num(relative, nan=math.inf), initial=0.0))
 
     def _size(self) -> FloatArray:
@@ -244,24 +251,42 @@ class Claim:
 
     @cached_property
     def grade(self) -> Grade | None:
-        """Finest grade that the relative error permits, or None."""
-        relative = self.relative_error
+        """Finest grade that the relative error and the difference permit, or None."""
+        relative = self._relative(np.maximum(self.budget.total, self.difference))
         return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Verdict: differs beyond the budget or without a number.
+        """Verdict: differs beyond both budget and resolution, or without a number.
 
-        Otherwise it agrees if its error is within the resolution or a grade, else it is inconclusive.
+        Otherwise it agrees if its error is finite and within the resolution or a grade, else it is inconclusive.
         """
-        difference, total = np.broadcast_arrays(self.difference, self.budget.total)
-        missing = ~np.isfinite(self.measured)
-        open_ = missing & np.isinf(total)  # appears at one tolerance only
-        if not np.all((difference <= total) & ~missing | open_):  # False for NaN
+        if np.any(self._wrong):
             return Verdict.DIFFERS
-        if np.any(self.budget.total > self.budget.resolution) and self.grade is None:
+        if np.any(self._open) or (np.any(self.budget.total > self.budget.resolution) and self.grade is None):
             return Verdict.INCONCLUSIVE
         return Verdict.AGREES
+
+    @property
+    def _open(self) -> NDArray[np.bool_]:
+        """True without an error estimate, or if a number appears at one tolerance only."""
+        total = self.budget.total
+        return np.asarray(np.isfinite(self.measured) & np.isnan(total) | np.isinf(total))
+
+    @property
+    def _wrong(self) -> NDArray[np.bool_]:
+        """True where a number is missing, or the difference matters; one wrong answer decides."""
+        allowed = np.maximum(self.budget.total, 0.0 if self.answers else self.budget.negligible)
+        return ~self._open & ~((self.difference <= allowed) & np.isfinite(self.measured))
+
+    @property
+    def caution(self) -> str:
+        """Sentence about a budget that is too small for a difference within the resolution, or ""."""
+        if self.verdict is not Verdict.AGREES or self.ratio.flat[self.worst] <= 1.0:
+            return ""
+        budget = np.broadcast_to(self.budget.total, self.predicted.shape).flat[self.worst]
+        difference = self.difference.flat[self.worst]
+        return f"The error budget of {budget:.2g} was too small for the difference of {difference:.2g}."
 
 
 def _unit(name: str) -> str:

@@ -161,28 +161,47 @@ SHORTER = 4.0
 LONGEST = 4.0
 """Largest expected time in s of a shorter step."""
 
+MOST_SHORTER = 16.0
+"""Factor of the step beyond which no shorter one is tried if all have failed."""
+
 Answer = TypeVar("Answer")
 
 
 def decided(
     engine: Engine | None, ask: Callable[[Engine | None], Answer], is_open: Callable[[Answer], bool]
 ) -> tuple[Answer, str]:
-    """Return the engine's answer, at a shorter step if its own leaves the claim open, and a note.
+    """Return the engine's answer, at a shorter step if its own leaves the claim open or fails, and a note.
 
-    An exception at a shorter step goes into the note.
+    An exception at a shorter step goes into the note if the engine's own step succeeded.
     """
     began, share, note = time.perf_counter(), 1.0, ""
-    answer = ask(engine)
-    while engine is not None and engine.step is not None and is_open(answer):
-        if SHORTER * (time.perf_counter() - began) > LONGEST:
+    answer = _answer(ask, engine)
+    while engine is not None and engine.step is not None and _fails(answer, is_open):
+        late = SHORTER * (time.perf_counter() - began) > LONGEST
+        failed = isinstance(answer, Exception)
+        if (late and (share > 1.0 or not failed)) or (
+            failed and share > MOST_SHORTER
+        ):  # the first call may compile
             break
         began, share = time.perf_counter(), SHORTER * share
-        try:
-            answer = ask(replace(engine, step=engine.step / share))
-        except Exception as error:  # the engine's own step succeeded
-            return (
-                answer,
-                f"The run with 1/{share:g} of the engine's own step failed: {printable(error)}",
-            )
-        note = f"Measured with 1/{share:g} of the engine's own step, which leaves the claim inconclusive."
+        shorter = _answer(ask, replace(engine, step=engine.step / share))
+        if not isinstance(shorter, Exception):
+            answer = shorter
+            note = f"Measured with 1/{share:g} of the engine's own step, which leaves the claim inconclusive."
+        elif not isinstance(answer, Exception):
+            note = f"The run with 1/{share:g} of the engine's own step failed: {printable(shorter)}"
+            break
+    if isinstance(answer, Exception):
+        raise answer
     return answer, note
+
+
+def _answer(ask: Callable[[Engine | None], Answer], engine: Engine | None) -> Answer | Exception:
+    try:
+        return ask(engine)
+    except Exception as error:  # a step may be too large for any answer
+        return error
+
+
+def _fails(answer: Answer | Exception, is_open: Callable[[Answer], bool]) -> bool:
+    return isinstance(answer, RuntimeError) or (not isinstance(answer, Exception) and is_open(answer))

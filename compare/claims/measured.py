@@ -25,7 +25,7 @@ class Measured:
       numbers or words along that axis.
     - ``system``, ``source``, ``resolution``: these override the study's and the declared ones.
     - ``parameters``, ``note``, ``named``: additions to the system's and the declared ones.
-    - ``data``: arrays by name, for the figures.
+    - ``data``: arrays by name for the figures, or a function that returns them, whose failure costs no verdict.
     - ``size``, ``answers``: as in ``Claim``.
     """
 
@@ -40,7 +40,7 @@ class Measured:
     parameters: Mapping[str, float | str] = field(default_factory=dict)
     source: str = ""
     note: str = ""
-    data: Mapping[str, ArrayLike] = field(default_factory=dict)
+    data: Mapping[str, ArrayLike] | Callable[[], Mapping[str, ArrayLike]] = field(default_factory=dict)
     named: Mapping[str, int | None] = field(default_factory=dict)
     size: ArrayLike | None = None
     answers: bool = False

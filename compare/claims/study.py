@@ -333,7 +333,13 @@ class Study:
             ) from None
         if measured is None:
             return None
-        return self._claim_of(declared, case, measured, engine), _arrays(measured.data)
+        claim = self._claim_of(declared, case, measured, engine)
+        try:
+            data, lost = _arrays(measured.data() if callable(measured.data) else measured.data), ""
+        except Exception as error:  # a figure must not cost a verdict
+            data, lost = {}, f"Not drawn, because of {type(error).__name__}: {printable(error)}."
+        notes = filter(None, (claim.note, claim.caution, lost))
+        return replace(claim, note=" ".join(notes)), data
 
     def _claim_of(self, declared: Declared, case: str, measured: Measured, engine: Engine | None) -> Claim:
         system = measured.system or self.system

@@ -130,6 +130,7 @@ Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
 def friction(engine: Engine) -> Friction:
     """Return the friction law of blocks on a plane at rest."""
     values = _slides(engine, probes.headings()).values.copy()
+    load = float(np.min(values[-1, :, probes.CONDITIONS][:, 1]))
     sizes = np.max(np.hypot(values[..., 0], values[..., 1]), axis=1)
     step = math.nan
     if engine.step is not None and abs(falling(sizes, HALVED) + 1.0) < PER_STEP:
@@ -137,7 +138,7 @@ def friction(engine: Engine) -> Friction:
         values[..., probes.FORCE] *= (sizes[-1] / sizes)[:, None, None]
     error = float(np.max(Ladder(values).error[:, probes.FORCE]))
     found = fitted(values[-1, :, :4], error + float(np.max(values[-1, :, probes.NOISE])))
-    return replace(found, per_step=found.strength * step)
+    return replace(found, per_step=found.strength * step, load=load)
 
 
 def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:

@@ -85,6 +85,7 @@ class Friction:
     across: float = math.nan
     axis: float = math.nan  # direction of that axis in rad
     per_step: float = math.nan  # largest impulse of a step, divided by μN, in s, if independent of the step
+    load: float = math.nan  # smallest μN of the slides in N
 
     @property
     def fits(self) -> bool:

@@ -63,8 +63,11 @@ def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float
 
 DRAWS, TURNING_DRAWS = 48, 24  # combinations on a plane at rest and on a turntable
 
-MASSES, SPEEDS, DISC_SPEEDS = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2)
-"""Ranges in kg, m/s and rad/s."""
+MASSES, SPEEDS, DISC_SPEEDS, PLACES = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2), (1e-4, 1.0)
+"""Ranges in kg, m/s, rad/s and m."""
+
+REACH = 9.0
+"""Largest distance of a probe from the origin in m, because the plate of an engine is finite."""
 
 SPENT = 0.05
 """Largest share of the slip that friction may remove; the probe is repeated with smaller loads."""
@@ -84,9 +87,16 @@ class Push:
     def of(
         cls, mass: float, load: float, slip: complex, place: complex = 0j, disc_speed: float = 0.0
     ) -> Push:
-        """Return a slide with the velocity ``slip`` (m/s) at ``place`` (m)."""
+        """Return a slide with the slip ``slip`` (m/s) at ``place`` (m)."""
         system = replace(SLIDE, mass=mass, stiffness=WEAK * mass, friction_force=load, disc_speed=disc_speed)
         return cls(system, place, slip + 1j * disc_speed * place)
+
+    def within_reach(self) -> Push:
+        """Return the slide about its place, with lengths, speeds and load so small that it stays within ``REACH``."""
+        half = 0.5 * (SETTLES_FOR + self.lasts) * self.velocity
+        share = min(1.0, REACH / (abs(self.place) + abs(half)))
+        system = replace(self.system, friction_force=share * self.system.friction_force)
+        return Push(system, share * (self.place - half), share * self.velocity)
 
     @property
     def lasts(self) -> float:
@@ -125,9 +135,11 @@ def draws(turning: bool) -> list[Push]:
     for mass, speed, load, heading, radius, angle, disc in levels.T.tolist():
         mass, speed = _within(MASSES, mass), _within(SPEEDS, speed)
         omega = math.copysign(_within(DISC_SPEEDS, disc), heading - 0.5) if turning else 0.0
-        place = cmath.rect(speed / (abs(omega) or 1.0) * 10.0 ** (radius - 0.5), 2.0 * math.pi * angle)
+        distance = speed / abs(omega) * 10.0 ** (radius - 0.5) if turning else _within(PLACES, radius)
+        place = cmath.rect(distance, 2.0 * math.pi * angle)
         slip = cmath.rect(speed, HEADINGS[int(heading * len(HEADINGS))])
-        found.append(Push.of(mass, FRICTION * mass * speed * 10.0 ** (-2.0 * load), slip, place, omega))
+        push = Push.of(mass, FRICTION * mass * speed * 10.0 ** (-2.0 * load), slip, place, omega)
+        found.append(push.within_reach())
     return found
 
 
@@ -152,8 +164,8 @@ def slides(
     """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
     They are the mean friction force/μN, the mean directions of slip and position, the conditions (mass, load,
-    mean slip speed, disc speed, distance from the axis), the initial speed in m/s as given and as measured, the error
-    of the force due to the declared precision, and the share of the slip that friction leaves.
+    mean slip speed, disc speed, mean distance from the axis), the initial speed in m/s as given and as measured, the
+    error of the force due to the declared precision, and the share of the slip that friction leaves.
     """
     motions = [(push.system, push.start, push.times(panels)) for push in pushes]
     runs = engine.simulate_many(motions, tolerance=tolerance)
@@ -173,7 +185,8 @@ def slides(
         noise = 3.0 * engine.precision * system.mass * speed / (system.friction_force * push.lasts)
         left = 1.0 - np.max(np.abs(slip - free)) / np.max(np.abs(free))
         mean_slip = np.mean(np.abs(slip))
-        conditions = system.mass, system.friction_force, mean_slip, system.disc_speed, abs(push.place)
+        distance = np.mean(np.abs(z))
+        conditions = system.mass, system.friction_force, mean_slip, system.disc_speed, distance
         found.append([*vectors, *conditions, speed, abs(begun), noise, left])
     return np.array(found)
 

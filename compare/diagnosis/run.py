@@ -176,7 +176,7 @@ def _motion(runs: FloatArray, name: str, *, by_step: bool) -> Motion:
     ratio = float(sizes[0] / sizes[1]) if len(runs) > 1 else math.nan
     return Motion(
         tuple(runs[-RUNGS:, ERROR].tolist()),
-        estimate(runs) + ROUNDING * max(map(abs, CASES[name].start)),
+        max(estimate(runs) + ROUNDING * max(map(abs, CASES[name].start)), CASES[name].negligible),
         falling(last[:, ERROR], ratio),
         CASES[name].resolution,
         float(runs[-1, SECONDS]),

@@ -59,8 +59,12 @@ class Scales:
     @property
     def looked_at(self) -> str:
         """Ranges in words of the variables on slides that keep their speed and whose force is ``KNOWN``."""
-        found, known = [], self.keep & (self.errors <= KNOWN)
-        for name, unit, values in zip(VARIABLES, UNITS, np.abs(self.conditions[known]).T, strict=True):
+        return self.ranges(self.keep & (self.errors <= KNOWN))
+
+    def ranges(self, chosen: NDArray[np.bool_]) -> str:
+        """Return the ranges in words of the variables on the ``chosen`` slides."""
+        found = []
+        for name, unit, values in zip(VARIABLES, UNITS, np.abs(self.conditions[chosen]).T, strict=True):
             if np.any(values := values[values > 0.0]):
                 found.append(f"{name} {_short(np.min(values))} to {_short(np.max(values))} {unit}")
         return ", ".join(found)
@@ -142,7 +146,8 @@ def blind(scales: Scales) -> str:
     at_rest = scales.conditions[:, DISC_SPEED] == 0.0
     force, slip, radial = ((one @ PLANE)[at_rest] for one in (scales.forces, scales.slips, scales.radial))
     acts, slides = force * np.conj(radial), slip * np.conj(radial)
-    oblique = np.minimum(np.abs(slides.real), np.abs(slides.imag)) > 0.1
+    # not past the axis, where the radius turns
+    oblique = (np.minimum(np.abs(slides.real), np.abs(slides.imag)) > 0.1) & (np.abs(radial) > 0.99)
     ignores = np.all(np.abs(acts.real)[oblique] < 0.1 * np.abs(slides.real)[oblique])
     acts_across = np.all(np.abs(acts.imag)[oblique] > 0.1 * np.abs(slides.imag)[oblique])
     return "friction ignores slip towards and away from the axis" if ignores and acts_across else ""

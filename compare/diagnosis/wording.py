@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
-from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
-from compare.diagnosis.probes import SETTLES_FOR, SLIDES_FOR, SUPPORTS
+from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, FITS, NEAR, NOTHING, Friction
+from compare.diagnosis.probes import SETTLES_FOR, SLIDE, SLIDES_FOR, SPEED, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
@@ -64,7 +64,7 @@ def of_law(
     if scales is not None and (text := blind(scales)):
         yield Remark(sentence(text), True)
     elif law.shape == NOTHING:
-        yield Remark("There is no friction.", True)
+        yield Remark(_no_friction(law, scales), True)
     elif not math.isnan(law.per_step):
         shape = f" Its shape is a {law.shape}." if law.sure and law.shape != CONE else ""
         yield Remark(
@@ -94,6 +94,23 @@ def of_law(
             yield Remark(sentence(other.text + how), not other.falls)
         if cause and (law.shape != CONE or not (explained or (small and not support_right))):
             yield Remark(cause, True)
+
+
+def _no_friction(law: Friction, scales: Scales | None) -> str:
+    """Describe slides without friction, and the force on the others."""
+    load = f", {error_text(law.load)} N" if math.isfinite(law.load) else ""
+    text = f"No friction was measured at {SLIDE.mass:g} kg{load} and {SPEED:g} m/s"
+    if scales is None:
+        return f"{text}."
+    sizes = np.hypot(*scales.forces.T)
+    acts = sizes > FITS + DISTINCT * scales.errors
+    if not np.any(acts):
+        return f"{text}, or in {len(sizes)} other slides."
+    least, most = (error_text(float(end)) for end in (np.min(sizes[acts]), np.max(sizes[acts])))
+    return (
+        f"{text}, but {least} to {most} times the limit μN in {np.sum(acts)} of {len(sizes)} other slides, "
+        f"at {scales.ranges(acts)}."
+    )
 
 
 def _cause(law: Friction, support: Shares | None) -> str:

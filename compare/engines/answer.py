@@ -22,7 +22,10 @@ class BadTrajectoryError(RuntimeError):
 
 
 def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
-    """Return ``trajectory`` if it is valid for ``system`` at ``times`` (n,), else raise ``BadTrajectoryError``."""
+    """Return ``trajectory`` with arrays of its own if it is valid for ``system`` at ``times`` (n,).
+
+    Raises ``TypeError`` if it is not a trajectory, and ``BadTrajectoryError`` if it is invalid.
+    """
     if not isinstance(trajectory, Trajectory):
         raise TypeError(f"simulate() returned {reprlib.repr(trajectory)}: it must be a Trajectory")
     asked, got = np.asarray(times, dtype=float), np.asarray(trajectory.times)
@@ -47,7 +50,9 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
         i = int(np.argmax(broken))
         raise BadTrajectoryError(f"the state at t = {asked[i]:g} s is not finite: {states[i].tolist()}")
     _check_phases(trajectory.phases, asked, system.state_size)
-    return trajectory
+    # an engine may return integers, or fill the same array in its next call
+    own = np.array(got, dtype=float), np.array(states, dtype=float)
+    return Trajectory(trajectory.system, *own, tuple(trajectory.phases), trajectory.solution)
 
 
 def _check_phases(phases: Sequence[object], times: FloatArray, components: int) -> None:

@@ -23,9 +23,9 @@ MOST = 5
 UNITS = tuple(
     (mass, length, time)
     for mass, length, time in itertools.product(range(-MOST, MOST + 1), repeat=3)
-    if max(abs(length - time), abs(mass - 2 * time), abs(mass + length - 2 * time)) <= MOST
+    if length <= 0 and max(abs(length - time), abs(mass - 2 * time), abs(mass + length - 2 * time)) <= MOST
 )
-"""Powers of two for kg, m and s."""
+"""Powers of two for kg, m and s; no lengths larger than in SI units, because the plate of an engine is finite."""
 
 DIMENSIONS = {
     "mass": (1, 0, 0),

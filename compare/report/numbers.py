@@ -151,8 +151,25 @@ def in_short(claim: Claim) -> str:
         return f"{answers_text(element.measured)} of {answers_text(element.predicted)}"
     unit = f" {element.unit}" if element.unit else ""
     if claim.verdict is Verdict.DIFFERS:
-        return f"by{SPACE}{error_text(element.difference)}{unit}"
-    return f"±{SPACE}{error_text(element.total)}{unit}" if element.total > 0.0 else ""
+        missing = not math.isfinite(element.measured)
+        return "no number" if missing else f"by{SPACE}{error_text(element.difference)}{unit}"
+    error = max(element.total, 0.0 if claim.verdict is Verdict.INCONCLUSIVE else element.difference)
+    return "no error estimate" if math.isnan(error) else f"±{SPACE}{error_text(error)}{unit}" if error else ""
+
+
+def decision(claim: Claim) -> str:
+    """Return the reason of a verdict, unless the claim agrees."""
+    element = worst(claim)
+    unit = f" {element.unit}" if element.unit else ""
+    place = f" at {element.name}" if element.name else ""
+    allowed = f"{error_text(element.total)}{unit}"
+    if claim.verdict is Verdict.INCONCLUSIVE:
+        if math.isfinite(element.total):
+            return f"the error budget of {allowed} is too large for a verdict"
+        return f"no error budget{place}: a number is missing at one of two tolerances"
+    if not math.isfinite(element.measured):
+        return f"the engine returned {error_text(element.measured)}{place}, so a number is missing"
+    return f"differs by {error_text(element.difference)}{unit}; the error budget is {allowed}"
 
 
 def answers_text(count: float) -> str:
@@ -165,6 +182,8 @@ def account(claim: Claim) -> str:
     element = worst(claim)
     if claim.answers:
         return f"{in_short(claim)} hold, {answers_text(element.numerical)} inconclusive"
+    if not math.isfinite(element.measured) or not math.isfinite(element.total):
+        return f"{decision(claim)}; predicted {element.predicted!r} {element.unit}".rstrip()
     unit = f" {element.unit}" if element.unit else ""
     largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
     return (

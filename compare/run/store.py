@@ -120,10 +120,16 @@ class Drawing:
 def drawn(study: Study, data: Mapping[str, Data], partial: Sequence[str] = ()) -> Drawing:
     """Return the figures and animations of a study as bytes.
 
-    The engines in ``partial`` lack claims. One is left out if a figure needs the data of these claims.
+    The engines in ``partial`` lack claims. One is left out if a figure needs the data of these claims. If the others
+    lack data too, each engine is tried.
     """
     shown = {name: arrays for name, arrays in data.items() if name not in partial}
-    found = _drawn(study, shown)
+    try:
+        found = _drawn(study, shown)
+    except KeyError:
+        if len(shown) < 2:
+            raise
+        return drawn(study, data, tuple(data))
     for engine in partial:
         more = {name: arrays for name, arrays in data.items() if name in {*shown, engine}}
         with suppress(KeyError):

@@ -110,8 +110,10 @@ class Trajectory:
     solution: Solution = NOT_TOLD
 
     def __post_init__(self) -> None:
-        for array in (self.times, self.states):
+        for name in ("times", "states"):
+            array = np.asarray(getattr(self, name))
             array.flags.writeable = False
+            object.__setattr__(self, name, array)
 
     @property
     def at_end(self) -> FloatArray:

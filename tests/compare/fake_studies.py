@@ -70,13 +70,13 @@ def claim(sentence, engine, predicted, measured, numerical, **more):
         "unit": "m",
     } | more
     resolution = values.pop("resolution", 1e-6)
-    model = values.pop("model", 0.0)
+    budget = {name: values.pop(name) for name in ("model", "negligible") if name in values}
     return Claim(
         sentence,
         engine=engine,
         predicted=predicted,
         measured=measured,
-        budget=ErrorBudget(numerical, resolution=resolution, model=model),
+        budget=ErrorBudget(numerical, resolution=resolution, **budget),
         **values,
     )
 

@@ -176,7 +176,7 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
         size=1.0,
         system=motion.system,
         source=motion.source,
-        data=_drawn(*balances.values()) if motion.drawn else {},
+        data=lambda: _drawn(*balances.values()) if motion.drawn else {},
         named={name.replace(",", ""): None},
     )
 
@@ -199,6 +199,8 @@ def _relative_residual(balance: PowerBalance) -> float:
 
 
 def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
+    last = others[-1]  # its phases may begin and end at other times
+    change = balance.residual - np.interp(balance.times, last.times, last.residual)
     return {
         "times": balance.times,
         "drive work": balance.drive_work,
@@ -206,7 +208,7 @@ def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
         "damper heat": balance.damper_heat,
         "stored energy": balance.stored_energy,
         "residual": balance.residual / balance.turned_over,
-        "change of residual": (balance.residual - others[-1].residual) / balance.turned_over,
+        "change of residual": change / balance.turned_over,
     }
 
 

@@ -133,7 +133,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
         error=found.largest + miss * sharpness,
         at={"μN in N": loads},
         components=SIZES,
-        data={"whirl loads": loads, "whirl extents": [extent(orbit) for orbit in first]},
+        data=lambda: {"whirl loads": loads, "whirl extents": [extent(orbit) for orbit in first]},
     )
 
 

@@ -3,7 +3,7 @@ import pytest
 from fake_studies import claim
 
 from compare.claims.claim import Grade, Verdict
-from compare.report.numbers import in_short, worst
+from compare.report.numbers import account, decision, in_short, worst
 
 
 @pytest.mark.parametrize(
@@ -11,7 +11,10 @@ from compare.report.numbers import in_short, worst
     [
         (0.5e-9, 1e-9, 0.0, 1e-6, Verdict.AGREES),
         (1.0, 1.0, 0.0, 1.0, Verdict.AGREES),  # the bounds are inclusive
-        (1.001e-9, 1e-9, 0.0, 1e-6, Verdict.DIFFERS),
+        (1.001e-9, 1e-9, 0.0, 1e-6, Verdict.AGREES),  # within the resolution
+        (1.4e-14, 7e-15, 0.0, 1e-6, Verdict.AGREES),
+        (1e-6, 1e-9, 0.0, 1e-6, Verdict.AGREES),
+        (1.001e-6, 1e-9, 0.0, 1e-6, Verdict.DIFFERS),
         (1.5e-9, 1e-9, 1e-9, 1e-6, Verdict.AGREES),
         (0.1, 0.5, 0.0, 1e-6, Verdict.INCONCLUSIVE),
         (0.1, 0.0, 0.5, 1e-6, Verdict.INCONCLUSIVE),
@@ -20,7 +23,8 @@ from compare.report.numbers import in_short, worst
         (np.nan, 1.0, 0.0, 1.0, Verdict.DIFFERS),
         (np.inf, 1.0, 0.0, 1.0, Verdict.DIFFERS),
         (np.nan, np.nan, 0.0, 1.0, Verdict.DIFFERS),
-        (0.0, np.nan, 0.0, 2.0, Verdict.DIFFERS),  # the coarser run gave no number
+        (1e9, np.inf, 0.0, 1.0, Verdict.INCONCLUSIVE),
+        (0.0, np.nan, 0.0, 2.0, Verdict.INCONCLUSIVE),  # the coarser run gave no number
         (np.nan, np.inf, 0.0, 1.0, Verdict.INCONCLUSIVE),  # present at one tolerance but not at another
     ],
 )
@@ -36,15 +40,18 @@ def test_verdict_of_a_number(difference, numerical, model, resolution, verdict):
         (2.0, 6e-5, {"resolution": 1e-9}, Grade.FINE, Verdict.AGREES),
         (2.0, 1.8e-2, {"resolution": 1e-9}, Grade.COARSE, Verdict.AGREES),
         (2.0, 1.0, {"resolution": 1e-9}, None, Verdict.INCONCLUSIVE),
-        # the relative error needs a size
+        # the relative error needs a size, and is at least the difference
         (0.0, 1e-12, {}, None, Verdict.AGREES),
         (0.0, 1e-12, {"size": 1.0}, Grade.EXACT, Verdict.AGREES),
         (2.0, 1e-12, {"kind": "order"}, None, Verdict.AGREES),
+        (2.0, 1e-12, {"measured": 2.0 + 1e-6}, Grade.FINE, Verdict.AGREES),
+        (2.0, 1e-12, {"measured": 2.0 + 1e-6, "negligible": 1e-7}, Grade.FINE, Verdict.DIFFERS),
+        (2.0, 0.0, {"measured": 1.0, "answers": True, "resolution": 1.5}, None, Verdict.DIFFERS),
         (2.0, 0.0, {"answers": True}, None, Verdict.AGREES),
     ],
 )
 def test_beyond_its_resolution_an_error_is_graded_relative_to_the_size(value, error, more, grade, verdict):
-    made = claim("c", "good", value, value, error, **more)
+    made = claim("c", "good", value, more.pop("measured", value), error, **{"resolution": 1.1e-6} | more)
     assert (made.grade, made.verdict) == (grade, verdict)
 
 
@@ -76,6 +83,23 @@ def test_the_worst_element_is_the_one_with_the_largest_share_of_its_budget(
     made = claim("c", "good", np.zeros(len(differences)), differences, budgets, resolution=100.0)
     assert made.worst == nearest
     assert worst(made).largest[0].index == largest
+
+
+@pytest.mark.parametrize(
+    ("measured", "numerical", "decided"),
+    [
+        (np.nan, 1.0, "the engine returned NaN at t = 2 s, so a number is missing"),
+        (5.0, np.nan, "no error budget at t = 2 s: a number is missing at one of two tolerances"),
+        (5.0, np.inf, "no error budget at t = 2 s: a number is missing at one of two tolerances"),
+        (5.0, 1e-3, "differs by 5.0 m; the error budget is 0.0010 m"),
+        (5.0, 9.0, "the error budget of 9.0 m is too large for a verdict"),
+    ],
+)
+def test_the_reason_of_a_verdict_is_in_words(measured, numerical, decided):
+    axes = (("t = 1 s", "t = 2 s"),)
+    made = claim("c", "good", np.zeros(2), [1e-7, measured], [1e-9, numerical], axes=axes)
+    assert decision(made) == decided
+    assert account(made).startswith(decided) == (not np.isfinite(measured + numerical))
 
 
 MIXED = {"unit": "m, rad", "axes": ((), ("x in m", "angle in rad")), "resolution": 100.0}

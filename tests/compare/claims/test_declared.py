@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.claims.claim import THEORY, Verdict
+from compare.claims.claim import THEORY, Grade, Verdict
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG5
 from compare.claims.prose import Prose
@@ -45,7 +45,7 @@ def study_of(*names):
         return Measured(predicted=1.0, value=1.0, error=1.0 / terms, resolution=1.0)
 
     declared = {
-        "rests": (rests, {"resolution": 1e-2, "swept": ("friction_force",), "note": "Declared."}),
+        "rests": (rests, {"resolution": 1e-3, "swept": ("friction_force",), "note": "Declared."}),
         "whirls": (whirls, {"resolution": 1.0, "each": {"slow disc": 1.0, "fast disc": 3.0}}),
         "sticks": (sticks, {"implied_by": rests}),
         "adds_up": (adds_up, {"kind": "formula"}),
@@ -130,6 +130,35 @@ def test_a_claim_has_the_declared_properties_and_names_its_elements():
 def test_names_of_another_shape_are_rejected(names):
     with pytest.raises(ValueError, match=r"numbers of shape \(2, 2\) have names for"):
         _ = Measured(predicted=np.ones((2, 2)), value=np.ones((2, 2)), **names).axes
+
+
+def test_a_budget_that_is_too_small_is_named_and_lowers_the_grade():
+    study = study_of("rests")
+    (claim,) = replace_resolution(study, 1e-2).measure(ENGINE).claims
+    assert (claim.verdict, claim.grade) == (Verdict.AGREES, Grade.COARSE)
+    assert claim.note == "Declared. The error budget of 0.001 was too small for the difference of 0.003."
+
+
+def replace_resolution(study, resolution):
+    study.declared[:] = [replace(one, resolution=resolution) for one in study.declared]
+    return study
+
+
+def test_data_that_cannot_be_drawn_cost_no_verdict():
+    study = study_of()
+
+    def of_unequal_lengths():
+        return {"change": np.zeros(3) - np.zeros(2)}
+
+    @study.claim("It whirls", resolution=1.0)
+    def whirls(engine, data=of_unequal_lengths):
+        return Measured(predicted=1.0, value=1.0, data=data)
+
+    found = study.measure(ENGINE)
+    assert (found.claims[0].verdict, found.data) == (Verdict.AGREES, {})
+    assert "Not drawn, because of ValueError: operands could not be broadcast" in found.claims[0].note
+    ragged = study.measure(ENGINE, {"whirls": {"data": {"rows": [[1.0], [1.0, 2.0]]}}})
+    assert (ragged.claims[0].verdict, ragged.data) == (Verdict.AGREES, {})
 
 
 def test_the_theory_has_no_engine():

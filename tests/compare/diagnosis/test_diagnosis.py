@@ -80,7 +80,12 @@ NAMED_BY_FORCES = {
         "turned", law=functools.partial(cone, turn=math.pi / 180.0)
     ): f"{LAW}the friction force is rotated by 1.0° (±",
     engine("backwards", law=functools.partial(cone, factor=-1.0)): f"{LAW}friction accelerates the slip",
-    engine("none", limit=lambda *_: 0.0): f"{LAW}there is no friction.",
+    engine(
+        "none", limit=lambda *_: 0.0
+    ): f"{LAW}no friction was measured at 1 kg, 0.20 N and 1 m/s, or in 72 other slides.",
+    engine("none when fast", limit=lambda system, speed, step: 1.0 if speed < 0.9 else 0.0): (
+        f"{LAW}no friction was measured at 1 kg, 0.20 N and 1 m/s, but 1.0 to 1.0 times the limit μN in "
+    ),
     engine("impulse without 1/m", limit=lambda system, *_: system.mass): (
         f"{LAW}the friction force over μN is proportional to mass^1.00"
     ),
@@ -147,6 +152,16 @@ def test_a_wrong_law_is_named(made, said, chosen):
     row, found = sentences(made, chosen)
     assert found.startswith(said)
     assert row.verdict == WRONG
+
+
+@pytest.mark.parametrize("turning", [False, True])
+def test_no_probe_leaves_a_plate_of_20_m(turning):
+    for push in [*probes.draws(turning), *probes.headings()]:
+        times = push.times(probes.PANELS)
+        assert np.max(np.abs(push.place + push.velocity * times)) <= 1.0001 * probes.REACH
+    speeds = [abs(push.velocity - 1j * push.system.disc_speed * push.place) for push in probes.draws(False)]
+    assert min(speeds) < 2e-4
+    assert max(speeds) > 90.0
 
 
 RIGHT_ENGINES = (RIGHT, reference, exudyn, *SOUND[1:], noisy(1e-7))

@@ -214,6 +214,33 @@ def test_a_result_that_is_not_a_trajectory_is_rejected():
         Engine("mine", lambda *_, **__: 42).simulate(FIG5, [0.0] * 4, TIMES)
 
 
+BUFFER = np.zeros((2, 8))
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        np.ndarray.tolist,
+        np.ndarray.astype,
+        lambda states: (
+            BUFFER[:, ::2].__setitem__(..., states) or BUFFER[:, ::2]
+        ),  # a view that the next call fills
+    ],
+    ids=["lists", "integers", "reused"],
+)
+def test_states_may_be_lists_integers_and_reused_arrays(form):
+    def still(system, state, times, *, tolerance):
+        states = np.array([state, state])
+        return Trajectory(
+            system, list(times), form(states, int) if form is np.ndarray.astype else form(states)
+        )
+
+    engine = Engine("still", still)
+    first, _ = (engine.simulate(FIG5, np.full(4, start), (0.0, 1.0)) for start in (1.0, 2.0))
+    assert first.states.dtype == float
+    assert first.states.tolist() == np.ones((2, 4)).tolist()
+
+
 def test_times_may_deviate_by_rounding():
     added_up = np.cumsum(np.full(1000, 0.1)) - 0.1
     asked = 0.1 * np.arange(1000)

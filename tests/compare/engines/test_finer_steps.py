@@ -53,6 +53,13 @@ def fails_below(system, state, times, *, step):
     return euler(system, state, times, step=step)
 
 
+def fails_above(system, state, times, *, step):
+    """Simulate the oscillator, but fail at the engine's own step."""
+    if step > STEP:
+        raise RuntimeError("diverged")
+    return euler(system, state, times, step=step)
+
+
 AGAIN = "Measured with 1/4 of the engine's own step, which leaves the claim inconclusive."
 FAILED = "The run with 1/4 of the engine's own step failed: out of memory"
 
@@ -64,12 +71,21 @@ FAILED = "The run with 1/4 of the engine's own step failed: out of memory"
         (euler, 2e-2, Verdict.AGREES, AGAIN),
         (functools.partial(euler, stiffness=1.01), 1e-3, Verdict.DIFFERS, AGAIN),
         (fails_below, 2e-2, Verdict.INCONCLUSIVE, FAILED),
+        (fails_above, 2e-2, Verdict.AGREES, AGAIN),
     ],
-    ids=["conclusive at once", "inconclusive", "wrong", "fails"],
+    ids=["conclusive at once", "inconclusive", "wrong", "fails", "fails at its own step"],
 )
 def test_an_inconclusive_claim_is_measured_again_with_shorter_steps(function, resolution, verdict, note):
     (claim,) = study_of(resolution).measure(Engine("mine", function, step=STEP)).claims
     assert (claim.verdict, claim.note) == (verdict, note)
+
+
+def test_an_engine_that_always_fails_gives_its_own_reason():
+    def fails(*motion, step):
+        raise RuntimeError(f"no result at {step:.3g} s")
+
+    with pytest.raises(RuntimeError, match=r"no result at 0\.1 s"):
+        study_of(1.0).measure(Engine("mine", fails, step=STEP))
 
 
 def test_only_a_fixed_step_is_shortened_and_only_within_the_time_limit(monkeypatch):

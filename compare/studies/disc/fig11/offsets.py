@@ -145,7 +145,11 @@ def points_rest(engine: Engine) -> Measured:
         return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
 
     found = refined(rests, OF_RESTS)
-    longer = engine.simulate(SIX, START, theory.TIMES, tolerance=OF_RESTS)
+
+    def data() -> dict[str, FloatArray]:
+        longer = engine.simulate(SIX, START, theory.TIMES, tolerance=OF_RESTS)
+        return {"six points": longer.states, "six points: rests": rests_of_points(longer)}
+
     numbers = range(1, len(predicted) // 2 + 1)
     return compared(
         predicted,
@@ -153,7 +157,7 @@ def points_rest(engine: Engine) -> Measured:
         error=float(np.max(known(found.value, found.error))),
         components=[f"{what} of rest {i}" for i in numbers for what in ("start", "end")],
         system=SIX,
-        data={"six points": longer.states, "six points: rests": rests_of_points(longer)},
+        data=data,
     )
 
 

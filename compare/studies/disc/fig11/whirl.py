@@ -72,8 +72,9 @@ def slides(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def rate_of_growth(engine: Engine, contact: str) -> Measured:
-    times, sizes = departure(engine, DISCS[contact], steady_whirl(DISCS[contact]))
-    data = {f"{contact}: departure": np.column_stack((times, sizes))}
+    def data() -> dict[str, FloatArray]:
+        return {f"{contact}: departure": departure(engine, DISCS[contact], steady_whirl(DISCS[contact]))}
+
     return replace(_of_growth(engine, contact, 0, 1e-2, "rate"), data=data)
 
 
@@ -152,8 +153,8 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
     return coefficients[1], scatter
 
 
-def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
-    """Return times (s), once a period, and the size of the pair's share divided by the radius.
+def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> FloatArray:
+    """Return times (s), once a period, and the size of the pair's share divided by the radius, shape (n, 2).
 
     The deviation starts ten times larger than in :func:`deviation`, and reaches the cycle in 900 s.
     """
@@ -162,8 +163,7 @@ def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[Flo
     run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-6)
     away = rotated(run.states, -turns * whirl.turn) - whirl.state
     away[:, ANGLE] -= turns * whirl.advance
-    sizes = np.abs(away @ whirl.projection) / whirl.radius
-    return np.asarray(times, dtype=float), np.asarray(sizes)
+    return np.column_stack((times, np.abs(away @ whirl.projection) / whirl.radius))
 
 
 # --- The modulated cycle on the ring

@@ -143,7 +143,7 @@ def approach(engine: Engine, throws: Throws = RINGS) -> Measured:
         model=float(np.max(left_out)),
         resolution=1e-2 * float(np.min(predicted)),
         at={"A/t": theory.NEARNESSES},
-        data=_drawn(engine, throws),
+        data=lambda: _drawn(engine, throws),
     )
 
 

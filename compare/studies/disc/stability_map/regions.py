@@ -151,7 +151,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
 def regions(engine: Engine, starts: Sequence[Start] | None = None) -> Measured:
     starts = starts_in_regions() if starts is None else starts
     ends, measured = theory.ends_of(engine.simulate, starts)
-    return replace(measured, data=ends_by_plane(starts, ends))
+    return replace(measured, data=lambda: ends_by_plane(starts, ends))
 
 
 @STUDY.claim(
@@ -164,7 +164,7 @@ def coexist(
 ) -> Measured:
     """Draw motions at ``loads`` (N) in the bifurcation diagram."""
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
-    return replace(measured, data={"section": long_motions(engine, loads)})
+    return replace(measured, data=lambda: {"section": long_motions(engine, loads)})
 
 
 def starts_in_regions() -> tuple[Start, ...]:

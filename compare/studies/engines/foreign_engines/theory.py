@@ -2,14 +2,15 @@
 
 import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from compare.claims import COARSENING, ROUNDING, Claim, ErrorBudget, Recorded, refined
+from compare.claims import ROUNDING, Claim, ErrorBudget, Recorded, refined
+from compare.claims.claim import Verdict
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Table
 from compare.engines import INSTALLED
@@ -220,15 +221,18 @@ def recorded_claims(recording: Recording) -> Recorded:
                 engine=recording.name,
                 predicted=np.array(0.0),
                 measured=runs[-1, ERROR],
-                budget=ErrorBudget(estimate(runs) + rounding, resolution=case.resolution),
+                budget=ErrorBudget(
+                    estimate(runs) + rounding, resolution=case.resolution, negligible=case.negligible
+                ),
                 parameters=parameters_of(case.system)
                 | {"tolerance": float(runs[-1, TOLERANCE]), "steps": float(runs[-1, STEPS])},
                 source=f"Recorded on {recording.recorded} with {recording.engine} {recording.version}, "
                 f"{recording.platform}; {case.title}",
                 unit="m",
-                note="Largest deviation of the finest run from the exact motion over time. Numerical error: the "
-                "changes in the last two refinements of the tolerance. Resolution: a tenth of the effect of another "
-                "friction law, or of a release.",
+                note="Largest deviation of the finest run from the exact motion over time. Numerical error: twice "
+                "that of Richardson's extrapolation, with the order that fits the last three changes. "
+                "Resolution: a tenth of the effect of another friction law, or of a release. A deviation below a "
+                "tenth of the resolution is negligible.",
             )
         )
     law = recording.probes.get("law", {})
@@ -243,13 +247,14 @@ def recorded_claims(recording: Recording) -> Recorded:
         law=law["shape"] if law.get("sure") else "",
         says=recording.says,
         adapter=ADAPTERS.get(recording.engine, PROGRAM),
-        advice=_advice(recording),
+        advice=_advice(recording, claims),
         whirl=float(recording.runs["whirl"][-1, ERROR] / abs(CASES["whirl"].exact()[0])),
     )
 
 
-def _advice(recording: Recording) -> str:
-    runs = {CASES[name]: rows for name, rows in recording.runs.items() if rows[-1, ERROR] <= estimate(rows)}
+def _advice(recording: Recording, claims: Sequence[Claim]) -> str:
+    right = [claim.sentence for claim in claims if claim.verdict is not Verdict.DIFFERS]
+    runs = {CASES[name]: rows for name, rows in recording.runs.items() if CASES[name].sentence in right}
     if not runs or recording.engine == "reference":
         return ""
     coarsest, rows = max(runs.items(), key=lambda one: float(one[1][-1, ERROR]))
@@ -322,9 +327,9 @@ def tables() -> tuple[Table, ...]:
     )
     return (
         Table(
-            "Largest deviation over time of the finest run from the exact motion, in m, ± the changes in its last "
-            f"two refinements, each to a tolerance {COARSENING:g} times smaller. The verdicts in the matrix follow "
-            "from these numbers. Orders refer to the number of steps and come from the last refinement.",
+            "Largest deviation over time of the finest run from the exact motion, in m, ± twice the error by "
+            "Richardson's extrapolation of its last changes. The verdicts in the matrix follow from these numbers. "
+            "Orders refer to the number of steps and come from the last refinement.",
             ("Engine, setting", *titles),
             finest,
         ),

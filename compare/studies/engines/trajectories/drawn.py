@@ -153,7 +153,7 @@ class Drawn:
                 theory.UNTIL,
                 sticks,
                 tolerance=WORKING if sticks else WORKING / 10,
-                resolution=1e-4 if sticks else 1e-7,
+                resolution=1e-8 if sticks else 1e-9,
                 source=f"assumption: parameters and start are random, with seed {theory.SEED}",
             )
             if _sticks(motion) if sticks else _slides(motion):

@@ -58,7 +58,7 @@ class Motion:
     until: float
     sticks: bool = False
     tolerance: float = WORKING / 10
-    resolution: float = 1e-7
+    resolution: float = 1e-9
     source: str = "no two parameters are equal, and nothing sticks after the start (our choice)"
 
 
@@ -81,7 +81,7 @@ PINS_THAT_STICK = {
         15.0,
         sticks=True,
         tolerance=WORKING,
-        resolution=1e-5,
+        resolution=1e-8,
         source="Fig. 5, second start",
     )
 }

@@ -294,14 +294,18 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     found = refined(
         lambda tolerance: [turning_speed(leave(one, both, tolerance).at_end) / one for one in below], 1e-7
     )
-    times = np.linspace(0.0, CAUGHT, 181)
-    leaving = [leave(speed, times, 1e-7).radius for speed in starts]
+
+    def data() -> dict[str, ArrayLike]:
+        times = np.linspace(0.0, CAUGHT, 181)
+        leaving = [leave(speed, times, 1e-7).radius for speed in starts]
+        return {"start": starts, "leaving_time": times, "leaving": leaving}
+
     return compared(
         np.ones(len(below)),
         found,
         error=np.full(len(below), found.largest),
         at={"ω in rad/s": below},
-        data={"start": starts, "leaving_time": times, "leaving": leaving},
+        data=data,
     )
 
 

@@ -36,8 +36,8 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 AT_REST = 1.5
 """Sample time divided by the time to rest, late enough for regularised laws."""
 
-SPRING = replace(BLOCK, stiffness=0.1)
-"""A stretch of 10 m pulls with μN, so the pull changes slowly."""
+SPRING = replace(BLOCK, stiffness=0.25)
+"""A stretch of 4 m pulls with μN, so the pull changes slowly, and the block stays on the plate of an engine."""
 
 LOADS = (0.1, 0.5, 0.9, 0.99)
 """Pulls that friction holds, in units of μN."""
@@ -62,9 +62,6 @@ DIAGONAL = 45.0
 
 PULL = 1.5
 """Initial pull on a block thrown along it, in units of μN."""
-
-AFAR = replace(BLOCK, stiffness=1e-2)
-"""The spring is initially stretched by 150 m; a larger distance would cost digits of the position."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
 
@@ -331,15 +328,14 @@ def swings(engine: Engine) -> Measured:
     "A weak distant spring pulls a sliding block straight ahead, by the exact solution of spring and friction",
     unit="m, m/s",
     resolution=1e-4,
-    note="s = (P − μN)/C·(1 − cos kt) + v₀/k·sin kt with the initial pull P = 1.5·μN and k = √(C/m). The "
-    "acceleration is uniform to within a hundredth.",
+    note="s = (P − μN)/C·(1 − cos kt) + v₀/k·sin kt with the initial pull P = 1.5·μN and k = √(C/m).",
 )
 def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    stretch = PULL * FRICTION / AFAR.stiffness
-    found = moved(engine, AFAR, headings, (-stretch + 0j, SPEED + 0j), PULLED)
-    way = pulled(AFAR, SPEED, stretch, PULLED[1:])
+    stretch = PULL * FRICTION / SPRING.stiffness
+    found = moved(engine, SPRING, headings, (-stretch + 0j, SPEED + 0j), PULLED)
+    way = pulled(SPRING, SPEED, stretch, PULLED[1:])
     from_start = Measurement(found.value + np.array([stretch, 0.0, 0.0, 0.0]), found.error)
-    return along(from_start, way, headings, PULLED[1:], system=AFAR)
+    return along(from_start, way, headings, PULLED[1:], system=SPRING)
 
 
 @STUDY.claim(
