@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
@@ -15,6 +14,7 @@ from scipy.special import stdtrit  # without the rest of scipy.stats
 from compare.engines import COARSENING as COARSENING
 from compare.engines import USUAL_TOLERANCE
 from compare.engines.engine import Engine
+from compare.engines.outside.processor_time import processor_time
 from compare.output.outside_text import printable
 from reference_model.systems import FloatArray
 
@@ -159,7 +159,7 @@ SHORTER = 4.0
 """Ratio of successive steps."""
 
 LONGEST = 4.0
-"""Largest expected time in s of a shorter step."""
+"""Largest expected processor time in s of a shorter step."""
 
 Answer = TypeVar("Answer")
 
@@ -171,12 +171,12 @@ def decided(
 
     An exception at a shorter step goes into the note.
     """
-    began, share, note = time.perf_counter(), 1.0, ""
+    began, share, note = processor_time(), 1.0, ""
     answer = ask(engine)
     while engine is not None and engine.step is not None and is_open(answer):
-        if SHORTER * (time.perf_counter() - began) > LONGEST:
+        if SHORTER * (processor_time() - began) > LONGEST:
             break
-        began, share = time.perf_counter(), SHORTER * share
+        began, share = processor_time(), SHORTER * share
         try:
             answer = ask(replace(engine, step=engine.step / share))
         except Exception as error:  # the engine's own step succeeded

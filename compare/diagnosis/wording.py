@@ -1,7 +1,7 @@
 """Sentences that explain the results for one engine."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +32,7 @@ VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
 CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
-MOTION, MASS, DAMPED = "Wrong motion", "Wrong mass", "Hidden damping"
+MOTION, MASS, DAMPED, FAILED = "Wrong motion", "Wrong mass", "Hidden damping", "Engine failed"
 """Beginnings of a verdict that does not concern friction."""
 
 
@@ -55,6 +55,13 @@ def size_text(share: float, error: float | None = None) -> str:
         return f"{share:.3g} times the right one"
     margin = f" (±{error_text(100.0 * error)} %)" if error is not None else ""
     return f"{error_text(100.0 * abs(share - 1.0))} % too {'large' if share > 1.0 else 'small'}{margin}"
+
+
+def of_gaps(beginning: str, gaps: Mapping[str, str], *, wrong: bool) -> Iterator[Remark]:
+    """Yield each reason of ``gaps``, which has the names of parts as keys."""
+    for reason in dict.fromkeys(gaps.values()):
+        names = ", ".join(name for name, why in gaps.items() if why == reason)
+        yield Remark(f"{beginning} {names}: {reason}.", wrong, FAILED)
 
 
 def of_law(

@@ -373,9 +373,9 @@ def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == set(PROBES) - {"lag", "moments"}
     assert row.sentences[0].startswith(
-        "Undecided: no result for law, scales, creep, history, support, repeat: out of"
+        "Engine failed: no result for law, scales, creep, history, support, repeat: out of"
     )
-    assert row.verdict == UNDECIDED
+    assert row.verdict == WRONG
     assert set(run._probed(broken, run.Workers(1)).gaps) == {"law"}
 
 

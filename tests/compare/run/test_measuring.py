@@ -20,6 +20,7 @@ from compare.run.levels import LIMITS
 from compare.run.measuring import NO_CLAIM, PACE_STEPS, Course, measured, pace
 from compare.run.runner import run
 from compare.run.store import Drawing
+from compare.run.workers import Done
 
 STUDY = Study("partly-long", Prose("One short claim, one long, one impossible"), quick=True)
 
@@ -61,7 +62,7 @@ def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted():
 
 
 def test_the_pace_is_the_time_for_a_second_of_motion(monkeypatch):
-    monkeypatch.setattr("time.perf_counter", iter([0.0, 4.0]).__next__)
+    monkeypatch.setattr("compare.run.measuring.processor_time", iter([0.0, 4.0]).__next__)
     assert pace(replace(STEPPING, name="paced")) == 4.0 / (PACE_STEPS * 1e-3)
 
 
@@ -74,7 +75,7 @@ def test_a_process_starts_again_after_a_failure_and_only_the_quick_level_omits_c
         with suppress(StopIteration):
             while True:
                 (_, _, (part,), _, left), _ = steps.send(found)
-                asked, found = [*asked, (part, left)], result
+                asked, found = [*asked, (part, left)], Done(part, result, 0.0)
         return asked
 
     started = [(NO_CLAIM, math.inf), ("short", within)]
@@ -110,13 +111,14 @@ def test_a_failed_claim_is_shown_alone(reporting, capsys):
     assert reporting("--engine", "stepping", "--resume")[0] == 1  # it is attempted again
 
 
-def test_a_claim_that_is_not_attempted_at_the_quick_level_leaves_the_status(reporting, tmp_path, capsys):
+def test_a_claim_that_is_not_attempted_at_the_quick_level_counts_as_not_measured(reporting, tmp_path, capsys):
     light = replace(STUDY, declared=[one for one in STUDY.declared if one.sentence != HEAVY])
     ended, results, cases = reporting("--level", "quick", "--engine", "stepping", study=light)
     assert ended == 0
     out = capsys.readouterr().out
     assert "partly-long stepping not simulated: would take about " in out
     assert f"1 not simulated ({'out'}" in out
+    assert "stepping: measured 1 of 2 claims (50 %)" in out
     assert [claim["id"] for claim in results["studies"][0]["claims"]] == ["partly-long/short"]
     assert results["studies"][0]["units"]["stepping"]["reason"].startswith("would take about ")
     assert [case.get("name") for case in cases if case.find("skipped") is not None] == [LONG]
