@@ -229,7 +229,8 @@ class _Runner:
             return
         data = self.result.data(study)
         outcomes = {column: self.result.outcomes[name, column] for column in data}
-        partial = [column for column, found in outcomes.items() if isinstance(found, Findings) and found.gaps]
+        findings = {column: found for column, found in outcomes.items() if isinstance(found, Findings)}
+        partial = [column for column, found in findings.items() if found.gaps or found.not_simulated]
         self.drawn_from[name] = drawing_stamp(data)
         found = self.drawings.find(name, self.drawn_from[name], study.figures)
         if found is not None:

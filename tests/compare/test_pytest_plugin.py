@@ -300,6 +300,26 @@ def test_invalid_options_are_rejected_at_once(arguments, expected, sentence, tmp
     assert sentence in output
 
 
+REPEATING = """
+def pytest_addoption(parser):
+    parser.addoption("--count", type=int, default=1)
+
+def pytest_generate_tests(metafunc):
+    pass
+"""
+
+
+@pytest.mark.parametrize("option", ["--count=2", "--count 2"])
+def test_an_option_for_test_functions_is_rejected_not_ignored(option, tmp_path, monkeypatch):
+    (tmp_path / "repeating.py").write_text(REPEATING)
+    monkeypatch.syspath_prepend(tmp_path)
+    arguments = ["-p", "repeating", "--pyargs", "compare", "--engine", "exudyn", "--collect-only", "-q"]
+    assert run(tmp_path, *arguments, "--study", "block")[0] == 0
+    status, output, _ = run(tmp_path, *arguments, *option.split())
+    assert status == USAGE
+    assert "--count: it applies to test functions, but claims are none; omit it" in output
+
+
 OTHERS = {
     "test_of_others.py": (),
     "tests/test_compare.py": ("tests/test_compare.py::test", "-k", "test or compare"),

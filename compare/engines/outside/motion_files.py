@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.engines.engine import KINDS, Engine, UnsupportedSystemError
+from compare.engines.engine import KINDS, DeclaredLackError, Engine, UnsupportedSystemError
 from compare.engines.outside.json_lines import question
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, FloatArray, System
@@ -23,6 +23,11 @@ from reference_model.trajectory import Trajectory
 INDEX = "plan.json"
 
 FORMAT = 1
+
+POINTS = "separate columns by commas, and write decimal points, not decimal commas"
+
+
+ROUNDED = 5e-12  # largest relative error of a time with 12 digits
 
 
 class BadFileError(RuntimeError):
@@ -45,12 +50,12 @@ class MotionFiles:
     ) -> Trajectory:
         """Return this motion from its file.
 
-        Raises ``UnsupportedSystemError`` if the motion is not in the plan or its file is incomplete, and
-        ``BadFileError`` if the file is invalid.
+        Raises ``DeclaredLackError`` if the motion is not in the plan, ``UnsupportedSystemError`` if its file is
+        incomplete, and ``BadFileError`` if the file is invalid.
         """
         name = name_of(question(system, initial_state, times, accuracy))
         if name not in _names(self.folder):
-            raise UnsupportedSystemError(
+            raise DeclaredLackError(
                 f"{Path(self.folder).name} does not contain this motion: {INDEX} has another version, "
                 "or the motion depends on answers to others"
             )
@@ -71,10 +76,15 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
         raise UnsupportedSystemError(f"{place} is missing") from None
     except OSError as error:
         raise BadFileError(f"{place} cannot be read: {error.strerror}") from None
+    for number, line in enumerate(lines, 1):
+        if ";" in line:
+            raise BadFileError(f"{place}, line {number}, contains a semicolon: {POINTS}")
     columns = ("t", *(name for name, _ in COLUMNS[type(system)]))
     rows = [(number, line.split(",")) for number, line in enumerate(lines, 1) if line.strip()]
     if rows and not any(map(_is_number, rows[0][1])):
         rows = rows[1:]
+    if len(rows) > len(times):  # an event may have two rows, before and after it
+        rows = [row for i, row in enumerate(rows) if i + 1 == len(rows) or row[1][0] != rows[i + 1][1][0]]
     found = len(rows)
     if found < len(times) or (found == len(times) and len(rows[-1][1]) < len(columns)):
         whole = found - (1 if rows and len(rows[-1][1]) < len(columns) else 0)
@@ -87,7 +97,8 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
     for i, (number, row) in enumerate(rows):
         if len(row) != len(columns):
             raise BadFileError(
-                f"{place}, line {number}, has {len(row)} numbers: it must have {len(columns)}, {', '.join(columns)}"
+                f"{place}, line {number}, has {len(row)} numbers: it must have {len(columns)}, {', '.join(columns)}; "
+                f"{POINTS}"
             )
         try:
             numbers[i] = row
@@ -97,7 +108,8 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
             ) from None
         if not np.isfinite(numbers[i]).all():
             raise BadFileError(f"{place}, line {number}, has a number that is not finite")
-    return Trajectory(system, numbers[:, 0], numbers[:, 1:])
+    same = np.isclose(numbers[:, 0], times, rtol=ROUNDED, atol=0.0)
+    return Trajectory(system, np.where(same, times, numbers[:, 0]), numbers[:, 1:])
 
 
 def files_engine(text: str) -> Engine:

@@ -14,7 +14,7 @@ from compare.claims.measured import Measured
 from compare.claims.prose import Prose
 from compare.claims.study import Findings, Study
 from compare.cli.app import status
-from compare.engines import Engine, registry
+from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError, registry
 from compare.output.outside_text import Failure
 from compare.run.levels import LIMITS
 from compare.run.measuring import NO_CLAIM, PACE_STEPS, Course, measured, pace
@@ -54,6 +54,19 @@ def test_a_claim_that_raises_or_would_take_too_long_is_a_gap():
     said = re.fullmatch(r"would take about ([0-9.e+]+) s with stepping; use --level full", found.gaps[LONG])
     assert float(said[1]) == pytest.approx(1e9 * pace(STEPPING), rel=0.06)  # two digits
     assert str(found.gaps[HEAVY]).startswith("stepping is too weak (test_measuring.py:")
+
+
+@pytest.mark.parametrize("error", [DeclaredLackError, UnsupportedSystemError])
+def test_only_a_refusal_beyond_the_declaration_is_a_gap(error):
+    study = Study("refused", Prose("A claim that an engine refuses"))
+
+    @study.claim("Nothing moves", resolution=1.0)
+    def refused(engine):
+        raise error("no offset")
+
+    found = study.measure(STEPPING)
+    assert found.not_simulated == ("no offset" if error is DeclaredLackError else "")
+    assert found.gaps == ({} if error is DeclaredLackError else {"Nothing moves": "no offset"})
 
 
 def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted():
@@ -132,18 +145,29 @@ def test_a_claim_that_is_not_attempted_at_the_quick_level_counts_as_not_measured
     assert len(results["studies"][0]["claims"]) == 2
 
 
+def lacking(engine):
+    raise DeclaredLackError("no heavy bodies")
+
+
+@pytest.mark.parametrize("second", [heavy, lacking])
 @pytest.mark.parametrize("needed", ["short", "heavy"])
 def test_curves_of_an_engine_with_gaps_are_drawn_unless_the_figure_needs_a_missing_claim(
-    needed, tmp_path, in_this_process
+    needed, second, tmp_path, in_this_process
 ):
     drawn_for = []
+    declared = [replace(one, function=second) if one.function is heavy else one for one in STUDY.declared]
 
     def draw(data):
         drawn_for.append([name for name, arrays in data.items() if arrays[needed].size])
         return {}
 
-    study = replace(STUDY, provided={"figures": draw, "curves": lambda: {"short": [2.0], "heavy": [3.0]}})
+    study = replace(
+        STUDY,
+        declared=declared,
+        provided={"figures": draw, "curves": lambda: {"short": [2.0], "heavy": [3.0]}},
+    )
     result = run((study,), (STEPPING,), folder=tmp_path, quick=True)
-    assert result.outcomes[STUDY.name, "stepping"].gaps.keys() == {LONG, HEAVY}
+    missing = {LONG, HEAVY} if second is heavy else {LONG}
+    assert result.outcomes[STUDY.name, "stepping"].gaps.keys() == missing
     assert isinstance(result.drawings[STUDY.name], Drawing)
     assert drawn_for[-1] == (["theory", "stepping"] if needed == "short" else ["theory"])
