@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
@@ -130,38 +131,27 @@ def pytest_configure(config: pytest.Config) -> None:
         studies(config.getoption("friction_discs_studies"))
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
-    if ignored := ", ".join(_given(config) & set(_of_functions(config))):
+    given = {str(word).partition("=")[0] for word in config.invocation_params.args}
+    if ignored := ", ".join(given & _of_functions(config)):
         raise pytest.UsageError(f"{ignored}: it applies to test functions, but claims are none; omit it")
     seed = seed_of(level, config.getoption("friction_discs_seed"))
     config.stash[_COUNTS] = Counts(Bench(limit, seed, quick=level == "quick"))
     config.pluginmanager.register(config.stash[_COUNTS])
 
 
-def _given(config: pytest.Config) -> set[str]:
-    return {str(word).partition("=")[0] for word in config.invocation_params.args}
-
-
-class _Names(list[str]):
-    """A parser that records the names of options."""
-
-    def addoption(self, *names: str, **_: Any) -> None:
-        self += names
-
-    def getgroup(self, *_: Any, **__: Any) -> _Names:
-        return self
-
-    def addini(self, *_: Any, **__: Any) -> None:
-        pass
-
-
-def _of_functions(config: pytest.Config) -> list[str]:
+def _of_functions(config: pytest.Config) -> set[str]:
     """Return the options of plugins that parametrise test functions, such as "--count" of pytest-repeat."""
-    hooks, manager, names = config.hook, config.pluginmanager, _Names()
-    plugins = [one.plugin for one in hooks.pytest_generate_tests.get_hookimpls()]
-    for one in hooks.pytest_addoption.get_hookimpls():
+    found: set[str] = set()
+    recorder = SimpleNamespace(
+        addini=lambda *_, **__: None, addoption=lambda *names, **_: found.update(names)
+    )
+    recorder.getgroup = lambda *_, **__: recorder
+    known = {"parser": recorder, "pluginmanager": config.pluginmanager}
+    plugins = [one.plugin for one in config.hook.pytest_generate_tests.get_hookimpls()]
+    for one in config.hook.pytest_addoption.get_hookimpls():
         if one.plugin in plugins and one.plugin_name != "python":  # that is pytest's own
-            one.function(*({"parser": names, "pluginmanager": manager}[name] for name in one.argnames))
-    return names
+            one.function(*(known[name] for name in one.argnames))
+    return found
 
 
 def _instead_of(module: str) -> str:

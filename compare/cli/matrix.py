@@ -159,15 +159,13 @@ def _print_benchmark(name: str, results: dict[str, Any]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from compare.diagnosis.friction_benchmark import summary
-
     table = Table("case", "expected", "found", "error", "grade", title=name, highlight=False)
     for case in results["cases"]:
         numbers = ("" if number is None else f"{number:.6g}" for number in (case["expected"], case["value"]))
         error = "" if case["error"] is None else f"{case['error']:.1g}"
         table.add_row(case["name"], *numbers, error, case["grade"])
     Console(highlight=False).print(table)
-    print(summary(results))
+    print(", ".join(f"{number} {grade}" for grade, number in results["score"].items()))
 
 
 def _print_row(row: Row) -> None:

@@ -70,7 +70,8 @@ class History:
 class Shares:
     """Forces divided by the exact ones, and their errors; NaN where there is none.
 
-    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2).
+    They are those of ``probes.SUPPORTS``, shape (3,) or (5,), force and moment on discs, shape (n, 2), or friction
+    far from the axis, shape (1,).
     """
 
     shares: FloatArray
@@ -233,6 +234,13 @@ def support(engine: Engine) -> Shares:
     return Shares(ladder.finest, ladder.error + noise)
 
 
+def far(engine: Engine) -> Shares:
+    """Return the friction force far from the axis."""
+    ladder = Ladder.of(engine, functools.partial(probes.far_away, engine))
+    noise = SAFETY * engine.precision * probes.FAR / (probes.FRICTION * probes.SLIDES_FOR)
+    return Shares(ladder.finest, ladder.error + noise)
+
+
 def moments(engine: Engine) -> Shares:
     """Return force and moment on discs, on a ring and on points."""
     kinds = [points for points in (None, 6) if engine.simulates(probes.discs(points)[0][0])]
@@ -296,6 +304,7 @@ PROBES: dict[str, type[Any]] = {
     "creep": Creep,
     "history": History,
     "support": Shares,
+    "far": Shares,
     "repeat": Repeat,
     "lag": Lag,
     "moments": Shares,
@@ -308,7 +317,7 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
         parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}
-        parts |= {"support": support, "repeat": repeat}
+        parts |= {"support": support, "far": far, "repeat": repeat}
     if engine.simulates(probes.TURN):
         parts["lag"] = lag
     if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):

@@ -160,14 +160,6 @@ def status(results: dict[str, Any]) -> int:
     return 1 if score["fails"] else 3 if 2 * score[NOT_SIMULATED] > sum(score.values()) else 0
 
 
-def summary(results: dict[str, Any]) -> str:
-    """Return the numbers of cases by grade, and the share that was measured."""
-    score = results["score"]
-    number = sum(score.values())
-    share = f"measured {number - score[NOT_SIMULATED]} of {number} cases"
-    return ", ".join([*(f"{count} {grade}" for grade, count in score.items()), share])
-
-
 if __name__ == "__main__":
     if len(sys.argv) != 2 or ":" not in sys.argv[1]:
         sys.exit("usage: python friction_benchmark.py MODULE:FUNCTION")
@@ -175,5 +167,5 @@ if __name__ == "__main__":
     sys.path.insert(0, "")
     found = run(getattr(importlib.import_module(module), function))
     json.dump(found, sys.stdout, indent=1)
-    print(summary(found), file=sys.stderr)
+    print(", ".join(f"{number} {grade}" for grade, number in found["score"].items()), file=sys.stderr)
     sys.exit(status(found))

@@ -178,6 +178,15 @@ def slides(
     return np.array(found)
 
 
+FAR = 100.0  # distance from the axis in m
+
+
+def far_away(engine: Engine, tolerance: float) -> FloatArray:
+    """Return the friction force against a slide at the distance ``FAR``, divided by μN, shape (1,)."""
+    (found,) = slides(engine, [Push.of(SLIDE.mass, FRICTION, SPEED, complex(FAR))], tolerance)
+    return np.array([-found[0]])
+
+
 def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:
     """Return the slides with loads so small that friction removes little of the slip."""
     found, saturated = list(pushes), list(range(len(pushes)))
@@ -282,14 +291,23 @@ SUPPORTS = {
     "spring force": (replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),
     "damper force": (replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
     "force of the offset": (replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
+    "hardening force, excluded by nonlinear = False,": (
+        replace(SMOOTH, hardening=1.0),
+        (1.0, 0.5, 0.0, 0.0),
+    ),
+    "stop force, excluded by nonlinear = False,": (
+        replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5),
+        (1.0, 0.5, 0.0, 0.0),
+    ),
 }
-"""Systems and initial states with one acting part of the support."""
+"""Systems and initial states with one acting part of the support, the nonlinear ones last."""
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of velocity due to each of ``SUPPORTS``, divided by the exact one."""
+    """Return the change of velocity due to those of ``SUPPORTS`` that it simulates, divided by the exact one."""
     times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
-    settled = _settled(engine, [(*motion, times) for motion in SUPPORTS.values()], tolerance, 1e-9)
+    motions = [(*motion, times) for motion in SUPPORTS.values() if engine.simulates(motion[0])]
+    settled = _settled(engine, motions, tolerance, 1e-9)
     return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])
 
 

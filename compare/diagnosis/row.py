@@ -38,6 +38,7 @@ class Row:
     creep: Creep | None = None
     history: History | None = None
     support: Shares | None = None
+    far: Shares | None = None
     repeat: Repeat | None = None
     lag: Lag | None = None
     moments: Shares | None = None
@@ -70,6 +71,8 @@ class Row:
                 found += wording.of_lag(self.lag, self.step, self._least_lag)
             if self.moments is not None and support_right:
                 found += wording.of_moments(self.moments, law)
+            if self.far is not None:
+                found += wording.of_far(self.far)
         found += wording.of_motions(self.motions, self._refined)
         if self.repeat is not None and self.repeat.deaf and any(remark.wrong for remark in found):
             deaf = Remark(
@@ -120,9 +123,8 @@ class Row:
     def share(self) -> Share:
         """Share of the parts whose result can distinguish friction laws."""
         probes = sum(getattr(self, name) is not None for name in PROBES)
-        conclusive = sum(motion.conclusive for motion in self.motions.values())
-        missing = len(self.motions) - conclusive + len(self.gaps) + len(self.not_measured)
-        return Share(probes + conclusive, probes + conclusive + missing)
+        measured = probes + sum(bool(motion.conclusive) for motion in self.motions.values())
+        return Share(measured, probes + len(self.motions) + len(self.gaps) + len(self.not_measured))
 
     @property
     def _refined(self) -> str:

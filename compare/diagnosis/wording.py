@@ -8,7 +8,7 @@ import numpy as np
 
 from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
-from compare.diagnosis.probes import SETTLES_FOR, SLIDES_FOR, SUPPORTS
+from compare.diagnosis.probes import FAR, SETTLES_FOR, SLIDES_FOR, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
@@ -191,9 +191,18 @@ def of_support(support: Shares) -> list[Remark]:
         return [Remark(said, True, DAMPED)]
     return [
         Remark(f"The {name} is {size_text(share) if abs(share) > MISSING else 'missing'}.", True, MOTION)
-        for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=True)
+        for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=False)
         if wrong
     ]
+
+
+def of_far(far: Shares) -> Iterator[Remark]:
+    """Yield that friction is wrong far from the axis; without any, the engine's plate may end before."""
+    (share,), (error,) = far.shares.tolist(), far.errors.tolist()
+    missing = abs(share) <= max(MISSING, error)
+    if abs(share - 1.0) > max(ALIKE, DISTINCT * error):
+        size = "missing; refuse motions that leave the plate" if missing else size_text(share)
+        yield Remark(f"Friction {FAR:g} m from the axis is {size}.", None if missing else True)
 
 
 def _hidden_damping(shares: FloatArray) -> FloatArray:

@@ -69,10 +69,9 @@ class Run:
         measured = of = 0
         for study in (one for one in self.studies if name in self.columns(one)):
             found = self.outcomes.get((study.name, name))
-            claims, gaps = (), study.sentences().keys()
-            if isinstance(found, Findings):
-                claims, gaps = found.claims, found.gaps.keys()
-            open_ = gaps | {claim.sentence for claim in claims if claim.verdict is Verdict.INCONCLUSIVE}
+            claims = found.claims if isinstance(found, Findings) else ()
+            open_ = set(found.gaps if isinstance(found, Findings) else study.sentences())
+            open_ |= {claim.sentence for claim in claims if claim.verdict is Verdict.INCONCLUSIVE}
             shown = {claim.sentence for claim in claims} - open_
             measured, of = measured + len(shown), of + len(shown | open_)
         return Share(measured, of)

@@ -70,7 +70,7 @@ def test_the_command_prints_and_writes_the_benchmark(tmp_path, monkeypatch, caps
     options = ["--benchmark", "--engine", "reference", "--engine", "stepper:simulate", "--output", "found"]
     assert cli.status(["matrix", *options]) == 1
     printed = capsys.readouterr().out
-    assert "22 exact, 0 good, 0 fair, 0 fails, 0 not simulated, measured 22 of 22 cases" in printed
+    assert "22 exact, 0 good, 0 fair, 0 fails, 0 not simulated" in printed
     written = json.loads((tmp_path / "found" / "benchmark.json").read_text(encoding="utf-8"))
     grades = {case["name"]: case["grade"] for case in written["stepper:simulate"]["cases"]}
     assert grades["ramp, μ = 0.1, tan θ = 1.01 μ"] == grades["stopping distance, 1 kg"] == "fails"
@@ -98,7 +98,7 @@ def test_the_file_runs_alone_and_prints_json(tmp_path):
         [sys.executable, str(FILE), "mine:simulate"], cwd=tmp_path, capture_output=True, check=False
     )
     assert done.returncode == 1
-    assert " fails, 0 not simulated, measured 22 of 22 cases" in done.stderr.decode()
+    assert " fails, 0 not simulated" in done.stderr.decode()
     results = json.loads(done.stdout)
     assert len(results["cases"]) == sum(results["score"].values())
     grades = {case["name"]: case["grade"] for case in results["cases"]}

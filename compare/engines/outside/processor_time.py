@@ -4,10 +4,8 @@ Unlike the time on a clock, it does not depend on other work of the machine.
 """
 
 import ctypes
-import functools
 import os
 import time
-from collections.abc import Callable
 
 PROGRAMS: set[int] = set()
 """Numbers of the running programs."""
@@ -29,15 +27,10 @@ def processor_time_of(process: int | None) -> float:
         return 0.0
     clock = ctypes.c_int()
     try:
-        return time.clock_gettime(clock.value) if _clock_of()(process, ctypes.byref(clock)) == 0 else 0.0
+        unknown = ctypes.CDLL(None).clock_getcpuclockid(process, ctypes.byref(clock))
+        return 0.0 if unknown else time.clock_gettime(clock.value)
     except (AttributeError, OSError, TypeError):  # no such function, for example on Windows and macOS
         return 0.0
-
-
-@functools.cache
-def _clock_of() -> Callable[..., int]:
-    function: Callable[..., int] = ctypes.CDLL(None).clock_getcpuclockid
-    return function
 
 
 def is_over(limit: float, spent: float, waited: float) -> bool:
