@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -291,23 +291,20 @@ SUPPORTS = {
     "spring force": (replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),
     "damper force": (replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
     "force of the offset": (replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
-    "hardening force, excluded by nonlinear = False,": (
-        replace(SMOOTH, hardening=1.0),
-        (1.0, 0.5, 0.0, 0.0),
-    ),
-    "stop force, excluded by nonlinear = False,": (
-        replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5),
-        (1.0, 0.5, 0.0, 0.0),
-    ),
 }
-"""Systems and initial states with one acting part of the support, the nonlinear ones last."""
+"""Systems and initial states with one acting part of the support."""
+
+NONLINEAR = {
+    "hardening force": (replace(SMOOTH, hardening=1.0), (1.0, 0.5, 0.0, 0.0)),
+    "stop force": (replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5), (1.0, 0.5, 0.0, 0.0)),
+}
+"""The same for the nonlinear parts."""
 
 
-def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of velocity due to those of ``SUPPORTS`` that it simulates, divided by the exact one."""
+def supports(engine: Engine, parts: Mapping[str, Any], tolerance: float) -> FloatArray:
+    """Return the change of velocity due to each of the ``parts``, divided by the exact one."""
     times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
-    motions = [(*motion, times) for motion in SUPPORTS.values() if engine.simulates(motion[0])]
-    settled = _settled(engine, motions, tolerance, 1e-9)
+    settled = _settled(engine, [(*motion, times) for motion in parts.values()], tolerance, 1e-9)
     return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])
 
 

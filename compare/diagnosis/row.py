@@ -39,6 +39,7 @@ class Row:
     history: History | None = None
     support: Shares | None = None
     far: Shares | None = None
+    nonlinear: Shares | None = None
     repeat: Repeat | None = None
     lag: Lag | None = None
     moments: Shares | None = None
@@ -73,6 +74,8 @@ class Row:
                 found += wording.of_moments(self.moments, law)
             if self.far is not None:
                 found += wording.of_far(self.far)
+        if self.nonlinear is not None and support_right:
+            found += wording.of_nonlinear(self.nonlinear)
         found += wording.of_motions(self.motions, self._refined)
         if self.repeat is not None and self.repeat.deaf and any(remark.wrong for remark in found):
             deaf = Remark(

@@ -8,7 +8,7 @@ import numpy as np
 
 from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
-from compare.diagnosis.probes import FAR, SETTLES_FOR, SLIDES_FOR, SUPPORTS
+from compare.diagnosis.probes import FAR, NONLINEAR, SETTLES_FOR, SLIDES_FOR, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
@@ -191,9 +191,19 @@ def of_support(support: Shares) -> list[Remark]:
         return [Remark(said, True, DAMPED)]
     return [
         Remark(f"The {name} is {size_text(share) if abs(share) > MISSING else 'missing'}.", True, MOTION)
-        for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=False)
+        for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=True)
         if wrong
     ]
+
+
+def of_nonlinear(forces: Shares) -> Iterator[Remark]:
+    """Yield the wrong forces of nonlinear supports."""
+    off = np.abs(forces.shares - 1.0) > np.maximum(DISTINCT * forces.errors, LEAST_SHARE)
+    for name, share, wrong in zip(NONLINEAR, forces.shares.tolist(), off.tolist(), strict=True):
+        if wrong:
+            size = size_text(share) if abs(share) > MISSING else "missing"
+            text = f"The {name} is {size}; declare nonlinear = False if the engine lacks it."
+            yield Remark(text, True, MOTION)
 
 
 def of_far(far: Shares) -> Iterator[Remark]:

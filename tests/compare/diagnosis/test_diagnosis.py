@@ -56,7 +56,7 @@ def deaf(system, start, times, *, tolerance, step):
 LAW, MOTION = "Not Coulomb friction: ", "Wrong motion: "
 BOX = f"{LAW}friction is a box with a separate limit for each axis"
 
-FORCES = ("law", "scales", "support", "repeat")
+FORCES = ("law", "scales", "support", "repeat", "nonlinear")
 
 NAMED_BY_FORCES = {
     engine("box", law=box): f"{BOX}.",
@@ -111,10 +111,10 @@ NAMED_BY_FORCES = {
         "clip of the impulse", limit=lambda system, _, step: min(1.0, 0.04 / (system.friction_force * step))
     ): (f"{LAW}the friction force is limited to 10 N."),
     replace(mistaken("no hardening", lambda system: {"hardening": 0.0}), kinds=("pin",)): (
-        f"{MOTION}the hardening force, excluded by nonlinear = False, is missing."
+        f"{MOTION}the hardening force is missing; declare nonlinear = False if the engine lacks it."
     ),
     replace(mistaken("no stop", lambda system: {"stop_stiffness": 0.0}), kinds=("pin",)): (
-        f"{MOTION}the stop force, excluded by nonlinear = False, is missing."
+        f"{MOTION}the stop force is missing; declare nonlinear = False if the engine lacks it."
     ),
     engine("clipped", fastest=2.0): (
         f"{MOTION}a body that starts at 90 m/s moves at 2.0 m/s at once: speeds are limited to 2.0 m/s."
@@ -406,7 +406,7 @@ def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == set(PROBES) - {"lag", "moments"}
     assert row.sentences[0].startswith(
-        "Engine failed: no result for law, scales, creep, history, support, far, repeat: out of"
+        "Engine failed: no result for law, scales, creep, history, support, far, repeat, nonlinear: out of"
     )
     assert row.verdict == WRONG
     assert set(run._probed(broken, run.Workers(1)).gaps) == {"law"}
