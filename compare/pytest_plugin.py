@@ -1,8 +1,8 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
 A separate process measures the claims. A test fails if the claim differs or the engine has no answer. A claim
-without a verdict is "not attempted" (unsupported, or no time is left), "inconclusive" (errors are too large) or "not
-finished" (beyond the time limit).
+without a verdict is "not attempted" (the engine declares that it lacks something), "inconclusive" (errors are too
+large) or "not measured" (the engine refuses a motion, or no time is left).
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive.
 """
@@ -13,11 +13,13 @@ from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
 from compare.run.levels import LIMITS, seed_of
+from compare.run.statuses import INTERRUPTED, NOTHING_SHOWN, Share
 
 if TYPE_CHECKING:
     from compare.claims.claim import Claim
@@ -28,15 +30,12 @@ STUDIES = Path(__file__).with_name("studies")
 
 STUDY_MODULES = "compare.studies"
 
-INCONCLUSIVE, NOT_ATTEMPTED, NOT_FINISHED = "inconclusive", "not attempted", "not finished"
+INCONCLUSIVE, NOT_ATTEMPTED, NOT_MEASURED = "inconclusive", "not attempted", "not measured"
 
-NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-", NOT_FINISHED: "t"}
+NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-", NOT_MEASURED: "t"}
 """Names of tests without a verdict in pytest's totals, and their progress characters."""
 
 PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
-
-NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
-"""Exit statuses beyond those of pytest: too few claims pass or some are not finished; no verdict."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -60,8 +59,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         dest="friction_discs_level",
         choices=tuple(LIMITS),
         default="full",
-        help="Studies to measure: all, or only those that take seconds. A claim that exceeds the time limit is not "
-        "finished at the full level, and not attempted at the quick level (default: full)",
+        help="Studies to measure: all, or only those that take seconds (default: full)",
     )
     group.addoption(
         "--seed",
@@ -84,7 +82,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         dest="friction_discs_limit",
         type=float,
         metavar="SECONDS",
-        help="Time limit in s for all claims of one study about one engine "
+        help="Limit of processor time in s for all claims of one study about one engine "
         f"(default: {LIMITS['full']:g}, or {LIMITS['quick']:g} at the quick level)",
     )
     group.addoption(
@@ -93,8 +91,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=int,
         default=1,
         metavar="N",
-        help=f"Smallest number of claims that must pass; otherwise the exit status is {NOTHING_SHOWN} (default: 1). "
-        f"The exit status is {NOTHING_MEASURED} if an engine has no verdict at all",
+        help=f"Smallest number of claims that must pass; otherwise the exit status is {NOTHING_SHOWN} (default: 1), "
+        "as it is if less than half of an engine's claims can be measured",
     )
 
 
@@ -133,9 +131,27 @@ def pytest_configure(config: pytest.Config) -> None:
         studies(config.getoption("friction_discs_studies"))
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
+    given = {str(word).partition("=")[0] for word in config.invocation_params.args}
+    if ignored := ", ".join(given & _of_functions(config)):
+        raise pytest.UsageError(f"{ignored}: it applies to test functions, but claims are none; omit it")
     seed = seed_of(level, config.getoption("friction_discs_seed"))
     config.stash[_COUNTS] = Counts(Bench(limit, seed, quick=level == "quick"))
     config.pluginmanager.register(config.stash[_COUNTS])
+
+
+def _of_functions(config: pytest.Config) -> set[str]:
+    """Return the options of plugins that parametrise test functions, such as "--count" of pytest-repeat."""
+    found: set[str] = set()
+    recorder = SimpleNamespace(
+        addini=lambda *_, **__: None, addoption=lambda *names, **_: found.update(names)
+    )
+    recorder.getgroup = lambda *_, **__: recorder
+    known = {"parser": recorder, "pluginmanager": config.pluginmanager}
+    plugins = [one.plugin for one in config.hook.pytest_generate_tests.get_hookimpls()]
+    for one in config.hook.pytest_addoption.get_hookimpls():
+        if one.plugin in plugins and one.plugin_name != "python":  # that is pytest's own
+            one.function(*(known[name] for name in one.argnames))
+    return found
 
 
 def _instead_of(module: str) -> str:
@@ -212,18 +228,14 @@ class ClaimTest(pytest.Item):
 
         bench, part = self.config.stash[_COUNTS].bench, self.study.sentences()[self.sentence]
         outcome = bench.outcome(self.study, self.engine, part)
-        if isinstance(outcome, Failure) and outcome.unfinished:
-            self._without_verdict(NOT_FINISHED, outcome.reason)
+        if isinstance(outcome, str) or (isinstance(outcome, Failure) and outcome.unfinished):
+            self._without_verdict(NOT_MEASURED, str(outcome))
         if isinstance(outcome, Failure):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
         if not claims:
-            reason = (
-                f"this claim does not apply to {self.engine}" if self.study.only else outcome.not_simulated
-            )
-            if reason:
-                self._without_verdict(NOT_ATTEMPTED, reason)
-            pytest.fail("the simulated motion does not allow this measurement", pytrace=False)
+            reason = outcome.not_simulated or f"this claim does not apply to {self.engine}"
+            self._without_verdict(NOT_ATTEMPTED, reason)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:
             pytest.fail(self._account(verdicts[Verdict.DIFFERS]), pytrace=False)
@@ -246,11 +258,22 @@ class Counts:
     def __init__(self, bench: Bench) -> None:
         self.bench = bench
         self.found: Counter[tuple[str, str]] = Counter()
+        self.interrupted = False
+
+    def pytest_keyboard_interrupt(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
+        """Notice Ctrl-C, but not pytest's own interruptions."""
+        self.interrupted = excinfo.type is KeyboardInterrupt
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count the result of a test."""
         if report.when == "call":
             self.found[_property(report, ENGINE), _why_none(report) or report.outcome] += 1
+
+    def share(self, engine: str) -> Share:
+        """Return the share of claims with a verdict among those that the engine declares to simulate."""
+        counts = {why: number for (name, why), number in self.found.items() if name == engine}
+        measured = sum(number for why, number in counts.items() if why not in NO_VERDICT)
+        return Share(measured, sum(counts.values()) - counts.get(NOT_ATTEMPTED, 0))
 
     def pytest_unconfigure(self) -> None:
         """End the measuring process."""
@@ -316,21 +339,23 @@ def _property(report: pytest.TestReport, name: str) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Set exit status 7 if an engine has no verdict, or 6 if claims are not finished or too few pass."""
+    """Replace pytest's exit status by one of ``compare.run.statuses``."""
     config, names = session.config, _engines(session.config)
-    if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
+    if not names or config.getoption("collectonly"):
         return
-    counts = config.stash[_COUNTS].found
-    if any(counts[name, NOT_FINISHED] for name in names):
-        session.exitstatus = NOTHING_SHOWN
-    elif any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):
-        session.exitstatus = NOTHING_MEASURED
-    elif sum(counts[name, "passed"] for name in names) < config.getoption("friction_discs_least"):
+    counts = config.stash[_COUNTS]
+    if counts.interrupted:
+        session.exitstatus = INTERRUPTED
+    if exitstatus != pytest.ExitCode.OK:
+        return
+    passed = sum(counts.found[name, "passed"] for name in names)
+    enough = all(counts.share(name).enough for name in names)
+    if not enough or passed < config.getoption("friction_discs_least"):
         session.exitstatus = NOTHING_SHOWN
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    """Write the diagnosis of failed engines, and reasons for missing verdicts."""
+    """Write the diagnosis of failed engines, reasons for missing verdicts, and the share of measured claims."""
     failed = terminalreporter.stats.get("failed", [])
     if failed and _engines(config) and not hasattr(config, "workerinput"):
         from compare.diagnosis.run import in_short
@@ -345,6 +370,9 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         reasons = Counter(report.longrepr[2].removeprefix("Skipped: ").splitlines()[0] for report in reports)
         for reason, count in reasons.items():
             terminalreporter.write_line(f"{why}: {reason} ({count} claim{'s' if count > 1 else ''})")
+    if not config.getoption("collectonly"):
+        for name in _engines(config):
+            terminalreporter.write_line(f"{name}: {config.stash[_COUNTS].share(name).in_words('claim')}")
 
 
 @pytest.hookimpl(optionalhook=True)

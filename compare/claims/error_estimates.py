@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
@@ -15,6 +14,7 @@ from scipy.special import stdtrit  # without the rest of scipy.stats
 from compare.engines import COARSENING as COARSENING
 from compare.engines import USUAL_TOLERANCE
 from compare.engines.engine import Engine
+from compare.engines.outside.processor_time import processor_time
 from compare.output.outside_text import printable
 from reference_model.systems import FloatArray
 
@@ -159,7 +159,7 @@ SHORTER = 4.0
 """Ratio of successive steps."""
 
 LONGEST = 4.0
-"""Largest expected time in s of a shorter step."""
+"""Largest expected processor time in s of a shorter step."""
 
 MOST_SHORTER = 16.0
 """Factor of the step beyond which no shorter one is tried if all have failed."""
@@ -174,16 +174,16 @@ def decided(
 
     An exception at a shorter step goes into the note if the engine's own step succeeded.
     """
-    began, share, note = time.perf_counter(), 1.0, ""
+    began, share, note = processor_time(), 1.0, ""
     answer = _answer(ask, engine)
     while engine is not None and engine.step is not None and _fails(answer, is_open):
-        late = SHORTER * (time.perf_counter() - began) > LONGEST
+        late = SHORTER * (processor_time() - began) > LONGEST
         failed = isinstance(answer, Exception)
         if (late and (share > 1.0 or not failed)) or (
             failed and share > MOST_SHORTER
         ):  # the first call may compile
             break
-        began, share = time.perf_counter(), SHORTER * share
+        began, share = processor_time(), SHORTER * share
         shorter = _answer(ask, replace(engine, step=engine.step / share))
         if not isinstance(shorter, Exception):
             answer = shorter

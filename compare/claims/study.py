@@ -18,7 +18,7 @@ from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose, Table, slug
 from compare.claims.validation import Validation
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError
 from compare.output.figures import Figure
 from compare.output.outside_text import Failure, printable
 from reference_model.orbits import NoOrbitError
@@ -41,8 +41,8 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 class Findings:
     """Results of one study for one engine: measured claims, and arrays for the figures.
 
-    ``not_simulated`` says why claims are missing, see ``Engine.lacking``. ``gaps`` contains, by its sentence, the
-    failure of each claim that failed, or the reason for not attempting it.
+    ``not_simulated`` contains the declared gaps of the engine, see ``Engine.lacking``. ``gaps`` contains, by its
+    sentence, the failure of each claim that failed, or the reason why it was not measured.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -289,6 +289,7 @@ class Study:
         claims: list[Claim] = []
         data: Data = {}
         lacking: list[str] = []
+        gaps: dict[str, Failure | str] = {}
         for declared in self.declared:
             name = declared.function.__name__
             if declared.of_engine != (engine is not None):
@@ -299,13 +300,18 @@ class Study:
                 try:
                     ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
                     found, note = decided(engine, ask, _is_open)
-                except UnsupportedSystemError as error:
+                except DeclaredLackError as error:
                     lacking.append(printable(error))
+                    continue
+                except UnsupportedSystemError as error:
+                    gaps[declared.sentence_of(case)] = printable(error)
                     continue
                 if found is not None:
                     claims.append(replace(found[0], note=f"{found[0].note} {note}".strip()))
                     data |= found[1]
-        return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
+                elif engine is not None and not (self.only or engine.contact_only):
+                    gaps[declared.sentence_of(case)] = Failure("the motion does not allow this measurement")
+        return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)), gaps)
 
     def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure the claims of the theory, or ``only`` some; without ``only`` add the curves."""

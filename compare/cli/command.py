@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 from typer.core import TyperCommand
 
 from compare.output.outside_text import printable
+from compare.run.statuses import BAD_INPUT as BAD_INPUT
+from compare.run.statuses import FINE as FINE
+from compare.run.statuses import INTERRUPTED as INTERRUPTED
+from compare.run.statuses import NOTHING_SHOWN as NOTHING_SHOWN
+from compare.run.statuses import SOMETHING_DIFFERS as SOMETHING_DIFFERS
 
 if TYPE_CHECKING:
     from compare.sweep.compute.run import Progress
-
-
-FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, NOTHING_MEASURED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
 HELD = ExitStack()

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from compare.cli.command import FINE, NOTHING_MEASURED, SOMETHING_DIFFERS, printing, refused, say
+from compare.cli.command import FINE, NOTHING_SHOWN, SOMETHING_DIFFERS, printing, refused, say
 
 Old = Annotated[Path, typer.Argument(metavar="OLD", help="Folder or results.json of the older report.")]
 New = Annotated[Path, typer.Argument(metavar="NEW", help="Folder or results.json of the newer report.")]
@@ -36,7 +36,7 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
     The command lists claims that changed by more than their error bars, are new or are missing.
 
     The exit status is 0 if no claim outside the baseline changed, got worse or is missing, else 1. It is 2 for bad
-    input, and 4 if NEW contains no verdict for one of its engines.
+    input, and 3 if NEW contains no verdict for one of its engines.
 
     \b
     Examples:
@@ -65,7 +65,5 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
     if any(change.counts for change in found):
         return SOMETHING_DIFFERS
     if empty := without_verdict(after):
-        return say(
-            f"{new} contains no verdict for {', '.join(empty)}; nothing was compared", NOTHING_MEASURED
-        )
+        return say(f"{new} contains no verdict for {', '.join(empty)}; nothing was compared", NOTHING_SHOWN)
     return FINE

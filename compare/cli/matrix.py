@@ -12,7 +12,6 @@ import typer
 from compare.cli.command import (
     FINE,
     INTERRUPTED,
-    NOTHING_MEASURED,
     NOTHING_SHOWN,
     SOMETHING_DIFFERS,
     BadInputError,
@@ -32,7 +31,7 @@ Limit = Annotated[
     float,
     typer.Option(
         metavar="SECONDS",
-        help="Time limit in s for each part of an engine's row.",
+        help="Limit of processor time in s for each part of an engine's row.",
         parser=positive("limit", "s"),
     ),
 ]
@@ -65,9 +64,9 @@ def matrix(
     and blocks that are pulled from rest. The motions of the recorded engines follow. The command writes matrix.json
     after each row. At the end it draws matrix.png and, if a law is wrong, friction.png with the measured forces.
 
-    The exit status is 0 if an engine is right, even if only with smaller steps, and 1 if it is wrong. It is 2 for bad
-    input, 3 if the verdict is open or a part was not finished in time, 4 if an engine simulates none of these
-    motions, and 130 after Ctrl-C.
+    The exit status is 0 if at least half of the parts were measured and the engine is right, even if only with
+    smaller steps. It is 1 if the engine is wrong or failed, 2 for bad input, 3 if less was measured or the verdict is
+    open, and 130 after Ctrl-C.
 
     \b
     Examples:
@@ -87,7 +86,7 @@ def matrix(
     broken = [one for one in found if isinstance(one, Row)]
     chosen = tuple(one for one in found if not isinstance(one, Row))
     if benchmark:
-        return _benchmark(chosen, bool(broken), limit, output)
+        return _benchmark(chosen, _status(broken), limit, output)
     rows: list[Row] = list(recorded_rows()) if recorded else []
     others = len(rows)
     if broken:
@@ -112,17 +111,12 @@ def matrix(
 
 
 def _status(rows: Sequence[Row]) -> int:
-    """Return the exit status for the verdicts of the measured rows, and say why there is no verdict."""
+    """Return the exit status for the verdicts of the measured rows, and say which are open."""
     from compare.diagnosis.row import UNDECIDED
 
     if any(row.wrong for row in rows):
         return SOMETHING_DIFFERS
-    if empty := [row.engine for row in rows if row.empty]:
-        return say(
-            f"nothing was measured: none of these motions can be simulated by {', '.join(empty)}",
-            NOTHING_MEASURED,
-        )
-    open_ = [row.engine for row in rows if row.verdict == UNDECIDED]
+    open_ = [f"{row.engine} ({row.share.in_words('part')})" for row in rows if row.verdict == UNDECIDED]
     return say(f"undecided: {', '.join(open_)}", NOTHING_SHOWN) if open_ else FINE
 
 
@@ -138,30 +132,27 @@ def _first_look(checked: Iterable[tuple[Engine, str | Row]]) -> Iterator[Engine 
         yield engine
 
 
-def _benchmark(engines: Sequence[Engine], broken: bool, limit: float, output: Path) -> int:
-    from compare.diagnosis.friction_benchmark import NOT_SIMULATED
+def _benchmark(engines: Sequence[Engine], broken: int, limit: float, output: Path) -> int:
+    from compare.diagnosis.friction_benchmark import status
     from compare.diagnosis.run import benchmarked
     from compare.engines import owner_of
     from compare.output.text_files import write_text
     from compare.run.workers import Failure, Workers
 
-    found, fails, simulated = {}, False, 0
+    found, statuses = {}, {broken}
     with Workers(1, limit) as workers:
         for engine in engines:
             results = workers.ask(benchmarked, engine, owner=owner_of(engine))
             if isinstance(results, Failure):
-                broken = True
+                statuses.add(NOTHING_SHOWN if results.unfinished else SOMETHING_DIFFERS)
                 print(f"{engine.name}: no result: {results}", flush=True)
                 continue
             found[engine.name] = results
-            fails |= results["score"]["fails"] > 0
-            simulated += len(results["cases"]) - results["score"][NOT_SIMULATED]
+            statuses.add(status(results))
             with printing():
                 _print_benchmark(engine.name, results)
             write_text(output / "benchmark.json", json.dumps(found, indent=1, ensure_ascii=False))
-    if fails:
-        return SOMETHING_DIFFERS
-    return NOTHING_SHOWN if broken else FINE if simulated else NOTHING_MEASURED
+    return next(one for one in (SOMETHING_DIFFERS, NOTHING_SHOWN, FINE) if one in statuses)
 
 
 def _print_benchmark(name: str, results: dict[str, Any]) -> None:
@@ -181,6 +172,7 @@ def _print_row(row: Row) -> None:
     print(f"{row.engine} {row.version}".rstrip())
     for sentence in row.sentences:
         print(f"  {sentence}")
+    print(f"  {row.share.in_words('part')}")
 
 
 def _print_table(rows: Sequence[Row]) -> None:

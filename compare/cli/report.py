@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,7 +12,6 @@ import typer
 from compare.cli.command import (
     FINE,
     INTERRUPTED,
-    NOTHING_MEASURED,
     NOTHING_SHOWN,
     SOMETHING_DIFFERS,
     measurements,
@@ -75,8 +74,8 @@ Limit = Annotated[
     typer.Option(
         "--study-limit",
         metavar="SECONDS",
-        help="Time limit in s for one study of one engine. By default 17 for your own engine at the quick level, "
-        "which does not attempt claims that would take longer; else no limit.",
+        help="Limit of processor time in s for one study of one engine. By default 17 for your own engine at the "
+        "quick level, which does not attempt claims that would take longer; else no limit.",
         parser=positive("study-limit", "s"),
         show_default=False,
     ),
@@ -141,10 +140,10 @@ def report(
     It writes index.html, results.json, junit.xml and figures. Without --output, a full report goes into the folder
     report, and a partial one (some studies or engines, one claim, the quick level) into report-part.
 
-    The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, 3 if
-    too few claims agree or some were not finished in time, and 4 if an engine named with --engine has no verdict or
-    omits a claim without a reason. Claims that the quick level does not attempt do not count. It is 130 after Ctrl-C;
-    --resume then completes the report, but does not notice changes to data files of your own engine.
+    The exit status is 0 if no claim differs and at least half of each engine's claims were measured, and 1 if a claim
+    differs or an engine failed. It is 2 for bad input, and 3 if less was measured or fewer claims agree than
+    --min-conclusive requires. It is 130 after Ctrl-C; --resume then completes the report, but does not notice changes
+    to data files of your own engine.
 
     \b
     Examples:
@@ -293,40 +292,20 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
             f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report.",
             INTERRUPTED,
         )
-    wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
-    if wrong:
+    if matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result):
         return SOMETHING_DIFFERS
-    if unfinished := matrix.totals[State.MISSING]:
-        return say(f"{unfinished} claims were not finished within the time limit", NOTHING_SHOWN)
-    if unexplained := "; ".join(_unexplained(result, matrix, named)):
-        return say(unexplained, NOTHING_MEASURED)
+    if short := "; ".join(
+        f"{name}: {share.in_words('claim')}"
+        for name in result.engines
+        if not (share := result.share(name)).enough and (share.of or name in named)
+    ):
+        return say(f"too little to show anything: {short}", NOTHING_SHOWN)
     conclusive = matrix.totals[State.AGREES] - matrix.of_evidence("algebra")[State.AGREES]
     if conclusive < least_conclusive:
         return say(
             f"{conclusive} claims agree, but --min-conclusive requires {least_conclusive}", NOTHING_SHOWN
         )
     return FINE
-
-
-def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterator[str]:
-    """Yield a sentence for each named engine without a verdict, and for claims left out without a reason."""
-    from compare.claims.study import Findings
-    from compare.report.matrix import VERDICTS
-
-    for name in named:
-        if not any(matrix.count(name)[state] for state in VERDICTS):
-            yield f"nothing was measured with {name}"
-    for study in result.studies:
-        for name in named:
-            found = result.outcomes.get((study.name, name))
-            if not isinstance(found, Findings) or found.not_simulated or study.only:
-                continue
-            if (
-                missing := study.sentences().keys()
-                - {claim.sentence for claim in found.claims}
-                - found.gaps.keys()
-            ):
-                yield f"{study.name} {name}: claims not measured, without a reason: {_listed(sorted(missing))}"
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
@@ -349,6 +328,8 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
         print(line)
     for what, failure in _failures(result).items():
         print(f"{what}: {failure}")
+    for name in () if result.interrupted else result.engines:
+        print(f"{name}: {result.share(name).in_words('claim')}")
     print(f"{summary(matrix)} ({index})")
 
 

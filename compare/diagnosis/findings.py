@@ -3,7 +3,7 @@
 import functools
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -70,7 +70,8 @@ class History:
 class Shares:
     """Forces divided by the exact ones, and their errors; NaN where there is none.
 
-    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2).
+    They are those of ``probes.SUPPORTS`` or ``NONLINEAR``, shape (n,), force and moment on discs, shape (n, 2), or
+    friction far from the axis, shape (1,).
     """
 
     shares: FloatArray
@@ -227,10 +228,17 @@ def _held(engine: Engine, pulls: Sequence[float]) -> float:
     return least
 
 
-def support(engine: Engine) -> Shares:
-    """Return the forces of spring, damper and offset without friction."""
-    ladder = Ladder.of(engine, functools.partial(probes.supports, engine))
+def support(engine: Engine, parts: Mapping[str, Any] = probes.SUPPORTS) -> Shares:
+    """Return the forces of spring, damper and offset without friction, or of other ``parts``."""
+    ladder = Ladder.of(engine, functools.partial(probes.supports, engine, parts))
     noise = SAFETY * engine.precision / (probes.SLIDES_FOR - probes.SETTLES_FOR)
+    return Shares(ladder.finest, ladder.error + noise)
+
+
+def far(engine: Engine) -> Shares:
+    """Return the friction force far from the axis."""
+    ladder = Ladder.of(engine, functools.partial(probes.far_away, engine))
+    noise = SAFETY * engine.precision * probes.FAR / (probes.FRICTION * probes.SLIDES_FOR)
     return Shares(ladder.finest, ladder.error + noise)
 
 
@@ -297,7 +305,9 @@ PROBES: dict[str, type[Any]] = {
     "creep": Creep,
     "history": History,
     "support": Shares,
+    "far": Shares,
     "repeat": Repeat,
+    "nonlinear": Shares,
     "lag": Lag,
     "moments": Shares,
 }
@@ -309,7 +319,9 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
         parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}
-        parts |= {"support": support, "repeat": repeat}
+        parts |= {"support": support, "far": far, "repeat": repeat}
+        if engine.nonlinear:
+            parts["nonlinear"] = functools.partial(support, parts=probes.NONLINEAR)
     if engine.simulates(probes.TURN):
         parts["lag"] = lag
     if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -191,6 +191,15 @@ def slides(
     return np.array(found)
 
 
+FAR = 100.0  # distance from the axis in m
+
+
+def far_away(engine: Engine, tolerance: float) -> FloatArray:
+    """Return the friction force against a slide at the distance ``FAR``, divided by μN, shape (1,)."""
+    (found,) = slides(engine, [Push.of(SLIDE.mass, FRICTION, SPEED, complex(FAR))], tolerance)
+    return np.array([-found[0]])
+
+
 def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:
     """Return the slides with loads so small that friction removes little of the slip."""
     found, saturated = list(pushes), list(range(len(pushes)))
@@ -298,11 +307,17 @@ SUPPORTS = {
 }
 """Systems and initial states with one acting part of the support."""
 
+NONLINEAR = {
+    "hardening force": (replace(SMOOTH, hardening=1.0), (1.0, 0.5, 0.0, 0.0)),
+    "stop force": (replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5), (1.0, 0.5, 0.0, 0.0)),
+}
+"""The same for the nonlinear parts."""
 
-def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of velocity due to each of ``SUPPORTS``, divided by the exact one."""
+
+def supports(engine: Engine, parts: Mapping[str, Any], tolerance: float) -> FloatArray:
+    """Return the change of velocity due to each of the ``parts``, divided by the exact one."""
     times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
-    settled = _settled(engine, [(*motion, times) for motion in SUPPORTS.values()], tolerance, 1e-9)
+    settled = _settled(engine, [(*motion, times) for motion in parts.values()], tolerance, 1e-9)
     return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])
 
 

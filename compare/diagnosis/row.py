@@ -12,7 +12,7 @@ import numpy as np
 
 from compare.claims.as_json import as_json
 from compare.diagnosis import wording
-from compare.diagnosis.findings import MOTIONS, Creep, History, Lag, Motion, Repeat, Shares
+from compare.diagnosis.findings import MOTIONS, PROBES, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.ladder import RUNGS
 from compare.diagnosis.laws import DISTINCT, Friction
 from compare.diagnosis.probes import HEADINGS, SPEED
@@ -21,6 +21,7 @@ from compare.diagnosis.wording import DAMPED, LEAST_LAG, MASS, MOTION, RESTS, Re
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
+from compare.run.statuses import Share
 
 RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"  # verdicts over everything
 
@@ -37,12 +38,14 @@ class Row:
     creep: Creep | None = None
     history: History | None = None
     support: Shares | None = None
+    far: Shares | None = None
+    nonlinear: Shares | None = None
     repeat: Repeat | None = None
     lag: Lag | None = None
     moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
-    gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts without a result
-    not_simulated: tuple[str, ...] = ()
+    gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts that failed
+    not_measured: dict[str, str] = field(default_factory=dict)  # reasons of parts refused or out of time
     seconds: float = 0.0  # wall-clock time
 
     @functools.cached_property
@@ -69,9 +72,11 @@ class Row:
                 found += wording.of_lag(self.lag, self.step, self._least_lag)
             if self.moments is not None and support_right:
                 found += wording.of_moments(self.moments, law)
+            if self.far is not None:
+                found += wording.of_far(self.far)
+        if self.nonlinear is not None and support_right:
+            found += wording.of_nonlinear(self.nonlinear)
         found += wording.of_motions(self.motions, self._refined)
-        for reason, names in self._gaps_by_reason.items():
-            found.append(Remark(f"No result for {', '.join(names)}: {reason}.", None))
         if self.repeat is not None and self.repeat.deaf and any(remark.wrong for remark in found):
             deaf = Remark(
                 f"Results do not change with the {self._refined}, so an error of the integration cannot be "
@@ -80,6 +85,10 @@ class Row:
                 MOTION,
             )
             found.insert(0 if law is None or law.coulomb else len(found), deaf)
+        found += wording.of_gaps("No result for", self.gaps, wrong=True)
+        if not self.share.enough:
+            found.append(Remark(sentence(self.share.in_words("part")), None))
+        found += wording.of_gaps("Not measured:", self.not_measured, wrong=False)
         said = {
             remark.text.partition(" with ε")[0]: remark for remark in reversed(found)
         }  # regularised by two probes
@@ -114,11 +123,11 @@ class Row:
         return UNDECIDED if any(remark.wrong is None for remark in self.remarks) else RIGHT
 
     @property
-    def _gaps_by_reason(self) -> dict[str, list[str]]:
-        found: dict[str, list[str]] = {}
-        for name, reason in self.gaps.items():
-            found.setdefault(reason, []).append(name)
-        return found
+    def share(self) -> Share:
+        """Share of the parts whose result can distinguish friction laws."""
+        probes = sum(getattr(self, name) is not None for name in PROBES)
+        measured = probes + sum(bool(motion.conclusive) for motion in self.motions.values())
+        return Share(measured, probes + len(self.motions) + len(self.gaps) + len(self.not_measured))
 
     @property
     def _refined(self) -> str:
@@ -133,11 +142,6 @@ class Row:
     @property
     def _least_lag(self) -> float:
         return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
-
-    @property
-    def empty(self) -> bool:
-        """True if nothing was measured and nothing failed."""
-        return not (self.law or self.creep or self.lag or self.motions or self.gaps)
 
     @property
     def wrong(self) -> bool:

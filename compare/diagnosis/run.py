@@ -12,7 +12,7 @@ from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.ladder import RUNGS, falling
 from compare.diagnosis.probes import CHECKED_FOR, first_check
 from compare.diagnosis.row import RIGHT, Row
-from compare.engines import Engine, UnsupportedSystemError, owner_of
+from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
@@ -59,7 +59,7 @@ def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engin
     """
     for engine in engines:
         found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
-        if isinstance(found, str):
+        if found is None or isinstance(found, str):
             yield engine, ""
         elif isinstance(found, Failure):
             yield engine, _with(_empty(engine), "two blocks", found)
@@ -95,13 +95,15 @@ def _probed(engine: Engine, workers: Workers) -> Row:
 
 
 def measured(engine: Engine, part: str) -> Any:
-    """Return one part of an engine's diagnosis, or why it is not supported."""
+    """Return one part of an engine's diagnosis, why the engine refuses it, or None if it declares so."""
     return _or_reason(parts_of(engine)[part], engine)
 
 
 def _or_reason(measure: Callable[[Engine], Any], engine: Engine) -> Any:
     try:
         return measure(engine)
+    except DeclaredLackError:
+        return None
     except UnsupportedSystemError as error:
         return str(error)
 
@@ -112,13 +114,13 @@ def _empty(engine: Engine) -> Row:
 
 def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     row = replace(row, seconds=row.seconds + seconds)
+    if isinstance(found, str) or (isinstance(found, Failure) and found.unfinished):
+        return replace(row, not_measured=row.not_measured | {part: str(found)})
     if isinstance(found, Failure):
         return replace(row, gaps=row.gaps | {part: str(found)})
-    if isinstance(found, str):
-        return replace(row, not_simulated=(*row.not_simulated, part))
     if isinstance(found, Motion):
         return replace(row, motions=row.motions | {part: found})
-    return replace(row, **{part: found})  # names in PROBES are fields of the row
+    return row if found is None else replace(row, **{part: found})  # names in PROBES are fields of the row
 
 
 SLACK = 1e-6  # stiffness in N/m of a spring that pulls with a constant force
@@ -166,8 +168,7 @@ def row_of(recording: Recording) -> Row:
     motions = {name: _motion(runs, name, by_step=step is not None) for name, runs in recording.runs.items()}
     probes = {name: from_json(PROBES[name], content) for name, content in recording.probes.items()}
     version = f"{recording.version}, recorded on {recording.recorded}"
-    lacking = tuple(name for name in CASES if name not in recording.runs)
-    return Row(recording.name, version, step or math.nan, motions=motions, not_simulated=lacking, **probes)
+    return Row(recording.name, version, step or math.nan, motions=motions, **probes)
 
 
 def _motion(runs: FloatArray, name: str, *, by_step: bool) -> Motion:

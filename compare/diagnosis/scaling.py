@@ -114,6 +114,8 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
     grows = sizes[wrong] > GROWS * before[wrong]
     falls = bool(np.all(sizes[wrong] < law.strength) and np.median(grows))
     sizes, blocks = ratios.real, conditions[:, DISC_SPEED] == 0.0
+    if text := _limit(sizes[blocks] * conditions[blocks, LOAD], wrong[blocks]):
+        return Deviation(text, True)
     text = _thresholds(conditions, sizes, wrong)
     if np.any(wrong & blocks):
         text = (
@@ -139,6 +141,16 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
     )
     where = "" if np.any(wrong & blocks) else "on turntables only, "
     return Deviation(f"{where}the friction force {size} at {at}", False, falls)
+
+
+def _limit(forces: FloatArray, wrong: NDArray[np.bool_]) -> str:
+    """Describe ``forces`` (in N) that end at a limit, which the impulse of a step may have."""
+    if np.sum(wrong) < FEWEST:
+        return ""
+    limit = float(np.median(forces[wrong]))
+    if np.ptp(forces[wrong]) > 0.1 * limit or np.any(forces[~wrong] > 1.1 * limit):
+        return ""
+    return f"the friction force is limited to {error_text(limit)} N"
 
 
 def blind(scales: Scales) -> str:

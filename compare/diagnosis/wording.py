@@ -1,14 +1,14 @@
 """Sentences that explain the results for one engine."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, FITS, NEAR, NOTHING, Friction
-from compare.diagnosis.probes import SETTLES_FOR, SLIDE, SLIDES_FOR, SPEED, SUPPORTS
+from compare.diagnosis.probes import FAR, NONLINEAR, SETTLES_FOR, SLIDE, SLIDES_FOR, SPEED, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
@@ -32,7 +32,7 @@ VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
 CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
-MOTION, MASS, DAMPED = "Wrong motion", "Wrong mass", "Hidden damping"
+MOTION, MASS, DAMPED, FAILED = "Wrong motion", "Wrong mass", "Hidden damping", "Engine failed"
 """Beginnings of a verdict that does not concern friction."""
 
 
@@ -55,6 +55,13 @@ def size_text(share: float, error: float | None = None) -> str:
         return f"{share:.3g} times the right one"
     margin = f" (±{error_text(100.0 * error)} %)" if error is not None else ""
     return f"{error_text(100.0 * abs(share - 1.0))} % too {'large' if share > 1.0 else 'small'}{margin}"
+
+
+def of_gaps(beginning: str, gaps: Mapping[str, str], *, wrong: bool) -> Iterator[Remark]:
+    """Yield each reason of ``gaps``, which has the names of parts as keys."""
+    for reason in dict.fromkeys(gaps.values()):
+        names = ", ".join(name for name, why in gaps.items() if why == reason)
+        yield Remark(f"{beginning} {names}: {reason}.", wrong, FAILED)
 
 
 def of_law(
@@ -204,6 +211,25 @@ def of_support(support: Shares) -> list[Remark]:
         for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=True)
         if wrong
     ]
+
+
+def of_nonlinear(forces: Shares) -> Iterator[Remark]:
+    """Yield the wrong forces of nonlinear supports."""
+    off = np.abs(forces.shares - 1.0) > np.maximum(DISTINCT * forces.errors, LEAST_SHARE)
+    for name, share, wrong in zip(NONLINEAR, forces.shares.tolist(), off.tolist(), strict=True):
+        if wrong:
+            size = size_text(share) if abs(share) > MISSING else "missing"
+            text = f"The {name} is {size}; declare nonlinear = False if the engine lacks it."
+            yield Remark(text, True, MOTION)
+
+
+def of_far(far: Shares) -> Iterator[Remark]:
+    """Yield that friction is wrong far from the axis; without any, the engine's plate may end before."""
+    (share,), (error,) = far.shares.tolist(), far.errors.tolist()
+    missing = abs(share) <= max(MISSING, error)
+    if abs(share - 1.0) > max(ALIKE, DISTINCT * error):
+        size = "missing; refuse motions that leave the plate" if missing else size_text(share)
+        yield Remark(f"Friction {FAR:g} m from the axis is {size}.", None if missing else True)
 
 
 def _hidden_damping(shares: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ from compare.engines.answer import BadTrajectoryError
 from compare.engines.engine import (
     EVERY_KIND,
     KINDS,
+    DeclaredLackError,
     Engine,
     Simulate,
     UnsupportedSystemError,
@@ -55,6 +56,7 @@ __all__ = [
     "USUAL_TOLERANCE",
     "BadTrajectoryError",
     "ByName",
+    "DeclaredLackError",
     "Engine",
     "Fmu",
     "MotionFiles",

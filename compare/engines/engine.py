@@ -13,7 +13,6 @@ from compare.engines.answer import BadTrajectoryError, as_many_as, checked
 from compare.engines.precision import LEAST_PRECISE, USUAL_TOLERANCE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
-from compare.engines.unread import unread
 from compare.output.outside_text import one_line, one_of
 from reference_model.support import Support
 from reference_model.systems import FloatArray, PinOnDisc, System, finite_number, require_flag
@@ -49,6 +48,10 @@ class Simulate(Protocol):
 
 class UnsupportedSystemError(ValueError):
     """The engine does not simulate the requested system or motion; the message says which."""
+
+
+class DeclaredLackError(UnsupportedSystemError):
+    """The engine declares that it does not simulate the requested system or motion."""
 
 
 @dataclass(frozen=True)
@@ -158,14 +161,10 @@ class Engine:
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
         if not self.simulates(system):
-            raise UnsupportedSystemError(self.lacking([system]))
-        if not Support.of(system).linear:
-            start = np.ravel(np.asarray(initial_state, dtype=float)).tolist()
-            if ignored := unread(self.function, system, start, **self._accuracy(USUAL_TOLERANCE)):
-                raise UnsupportedSystemError(f"{self.name} never reads {' and '.join(ignored)}")
+            raise DeclaredLackError(self.lacking([system]))
         ends = np.asarray(times, dtype=float)[[0, -1]].tolist()
         if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *ends):
-            raise UnsupportedSystemError(f"{self.name} does not simulate stick")
+            raise DeclaredLackError(f"{self.name} does not simulate stick")
 
     def _accuracy(self, tolerance: float) -> dict[str, float]:
         return {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}

@@ -1,7 +1,7 @@
 """Levels of a report or of pytest: time limits, and the seed of the units of motions."""
 
 LIMITS = {"quick": 17.0, "full": 120.0}
-"""Time limits in s for one study of one engine in pytest, by level. The quick level has about seven studies."""
+"""Limits of processor time in s for one study of one engine, by level. The quick level has about seven studies."""
 
 QUICK_SEED = 1
 """Seed of the quick level, whose motions are mostly of 1 kg and slow in SI units."""

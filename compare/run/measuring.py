@@ -2,15 +2,15 @@
 
 import functools
 import math
-import time
 from collections.abc import Collection, Generator
 from dataclasses import dataclass, replace
 from typing import Any
 
 from compare.claims.study import Findings, Study
 from compare.engines import Engine, engines
+from compare.engines.outside.processor_time import processor_time
 from compare.output.outside_text import Failure
-from compare.run.workers import Workers, attempted
+from compare.run.workers import Done, Workers, attempted
 from reference_model.systems import PinOnDisc
 
 START_UP = 60.0
@@ -20,12 +20,12 @@ NO_CLAIM = "-"
 """Selector that fits no claim."""
 
 Work = tuple[tuple[Any, ...], float]
-"""Arguments of ``measured``, and a time limit in s."""
+"""Arguments of ``measured``, and a limit of processor time in s."""
 
 
 @dataclass
 class Course:
-    """Measurements of single claims about one engine, within the time that the other claims of the study leave.
+    """Measurements of single claims about one engine, within the processor time that the other claims leave.
 
     One process should measure all claims, because later claims then reuse earlier motions. ``ready`` is True if it
     has imported the engine.
@@ -39,7 +39,7 @@ class Course:
     spent: float = 0.0
     ready: bool = False
 
-    def claim(self, part: str) -> Generator[Work, Any, Findings | Failure | str]:
+    def claim(self, part: str) -> Generator[Work, Done, Findings | Failure | str]:
         """Yield work and receive its results; return those of one claim, or why there are none."""
         name = self.engine if isinstance(self.engine, str) else self.engine.name
         longer = f"the study {self.study.name} takes longer than {self.limit:g} s with {name}; "
@@ -48,15 +48,16 @@ class Course:
             return longer
         if not self.ready:  # imports do not count
             yield self._work(NO_CLAIM), self.limit + START_UP
-        began, left = time.monotonic(), max(round(self.limit - self.spent, 1), 0.1)  # for people to read
-        found: Findings | Failure = yield self._work(part, left if self.quick else math.inf), left
-        self.spent += time.monotonic() - began
+        left = max(round(self.limit - self.spent, 1), 0.1)  # for people to read
+        done = yield self._work(part, left if self.quick else math.inf), left
+        found: Findings | Failure = done.value
+        self.spent += done.spent
         self.ready = isinstance(found, Findings)  # a failure may have ended the process
         if isinstance(found, Findings):
             return next(iter(found.gaps.values()), found)
         return longer if self.quick and self.spent >= self.limit else found
 
-    def claims(self) -> Generator[Work, Any, Findings]:
+    def claims(self) -> Generator[Work, Done, Findings]:
         """Yield work and receive its results; return the findings about all claims."""
         found = Findings()
         for sentence, part in self.study.sentences().items():
@@ -77,18 +78,21 @@ class Bench:
         self._courses: dict[tuple[str, str], Course] = {}
         self._last: Course | None = None
 
-    def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure:
-        """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure."""
+    def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure | str:
+        """Return the findings of one ``part`` of ``study`` for the engine of that name, or why there are none."""
         new = Course(study, engine, self._limit, self._quick, self.seed)
         course = self._courses.setdefault((study.name, engine), new)
         course.ready = course.ready and self._last is course
-        self._last, steps, found = course, course.claim(part), None
+        self._last, steps = course, course.claim(part)
+        done: Any = None
         while True:
             try:
-                work, self._workers.limit = steps.send(found)
+                work, limit = steps.send(done)
             except StopIteration as end:
-                return Findings(not_simulated=end.value) if isinstance(end.value, str) else end.value
-            found = self._workers.ask(measured, *work, owner=engine)
+                result: Findings | Failure | str = end.value
+                return result
+            self._workers.submit(part, measured, *work, owner=engine, limit=limit)
+            (done,) = self._workers.finished()
 
     def close(self) -> None:
         """End the measuring process."""
@@ -133,7 +137,7 @@ PACE_STEPS = 500
 
 @functools.cache
 def pace(engine: Engine) -> float:
-    """Return the wall-clock time for a second of motion; 0 if ``engine`` has no fixed step or no result."""
+    """Return the processor time in s for a second of motion; 0 if ``engine`` has no fixed step or no result."""
     found = attempted(_paced, engine) if engine.step is not None else 0.0
     return found if isinstance(found, float) else 0.0
 
@@ -142,6 +146,6 @@ def _paced(engine: Engine) -> float:
     assert engine.step is not None
     start, lasts = (1.0, 0.0, 0.0, 0.0), PACE_STEPS * engine.step
     engine.simulate(PACED, start, (0.0, lasts))  # the first call may compile
-    began = time.perf_counter()
+    began = processor_time()
     engine.simulate(PACED, start, (0.0, lasts))
-    return (time.perf_counter() - began) / lasts
+    return (processor_time() - began) / lasts

@@ -6,13 +6,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from compare.claims.claim import THEORY
+from compare.claims.claim import THEORY, Verdict
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, engines, is_registered, known_name, owner_of, told_apart
 from compare.run.levels import LIMITS
 from compare.run.measuring import Course, Work, measured
 from compare.run.provenance import engine_stamp, engine_version
+from compare.run.statuses import Share
 from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
 
@@ -62,6 +63,18 @@ class Run:
             for column in self.columns(study)
             if (study.name, column) not in self.outcomes
         )
+
+    def share(self, name: str) -> Share:
+        """Return the share of conclusive claims among those that the engine ``name`` declares to simulate."""
+        measured = of = 0
+        for study in (one for one in self.studies if name in self.columns(one)):
+            found = self.outcomes.get((study.name, name))
+            claims = found.claims if isinstance(found, Findings) else ()
+            open_ = set(found.gaps if isinstance(found, Findings) else study.sentences())
+            open_ |= {claim.sentence for claim in claims if claim.verdict is Verdict.INCONCLUSIVE}
+            shown = {claim.sentence for claim in claims} - open_
+            measured, of = measured + len(shown), of + len(shown | open_)
+        return Share(measured, of)
 
     @property
     def done(self) -> int:
@@ -130,7 +143,7 @@ class _Runner:
     began: dict[Hashable, float] = field(default_factory=dict)
     stamps: dict[str, str | None] = field(default_factory=dict)
     drawn_from: dict[str, str] = field(default_factory=dict)
-    courses: dict[Hashable, tuple[Course, Generator[Work, Any, Findings]]] = field(default_factory=dict)
+    courses: dict[Hashable, tuple[Course, Generator[Work, Done, Findings]]] = field(default_factory=dict)
 
     def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
         result = self.result
@@ -162,16 +175,16 @@ class _Runner:
             return
         course = Course(study, engine, limit, self.quick)
         self.courses[key] = course, course.claims()
-        self._next(key, engine.name)
+        self._next(key, engine.name, None)
 
-    def _next(self, key: Hashable, owner: str, found: Any = None) -> Done | None:
+    def _next(self, key: Hashable, owner: str, last: Any) -> Done | None:
         """Submit the next claim of a study that is measured claim by claim; return the findings after the last."""
         course, steps = self.courses[key]
         try:
-            work, limit = steps.send(found)
+            work, limit = steps.send(last)
         except StopIteration as end:
             return Done(key, end.value, course.spent)
-        self.workers.submit(key, measured, *work, owner=owner, limit=limit, first=found is not None)
+        self.workers.submit(key, measured, *work, owner=owner, limit=limit, first=last is not None)
         return None
 
     def show(self, running: Collection[Hashable]) -> None:
@@ -200,7 +213,7 @@ class _Runner:
             if isinstance(done.value, Drawing):
                 self.drawings.keep(name, self.drawn_from[name], done.value)
             return
-        last = self._next(done.key, name, done.value) if done.key in self.courses else done
+        last = self._next(done.key, name, done) if done.key in self.courses else done
         if last is None:
             return
         self.result.outcomes[kind, name] = last.value
@@ -215,7 +228,8 @@ class _Runner:
             return
         data = self.result.data(study)
         outcomes = {column: self.result.outcomes[name, column] for column in data}
-        partial = [column for column, found in outcomes.items() if isinstance(found, Findings) and found.gaps]
+        findings = {column: found for column, found in outcomes.items() if isinstance(found, Findings)}
+        partial = [column for column, found in findings.items() if found.gaps or found.not_simulated]
         self.drawn_from[name] = drawing_stamp(data)
         found = self.drawings.find(name, self.drawn_from[name], study.figures)
         if found is not None:

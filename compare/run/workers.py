@@ -24,6 +24,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from compare.engines.outside.processor_time import is_over, processor_time, processor_time_of
 from compare.output.outside_text import Failure as Failure
 from compare.output.outside_text import cause_of_end, printable
 
@@ -47,14 +48,18 @@ FAREWELL = 1.0
 
 TICK = 0.005
 
+LOOKS_EVERY = 0.1
+"""Time in s between two looks at the processor time of a process."""
+
 
 @dataclass(frozen=True)
 class Done:
-    """A finished piece of work with its result or ``Failure``."""
+    """A finished piece of work with its result or ``Failure``, its duration and its processor time in s."""
 
     key: Hashable
     value: Any
     seconds: float
+    spent: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +74,8 @@ class _Work:
 class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager; leaving it kills all processes.
 
-    Work that takes longer than ``limit`` (s) fails. ``watch`` gets the keys of the running work when they may have
-    changed.
+    Work that takes more processor time than ``limit`` (s), or hangs that long, has no result. ``watch`` gets the keys
+    of the running work when they may have changed.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
@@ -151,15 +156,15 @@ class Workers:
     def _collect(self) -> Iterator[Done]:
         """Wait for the first result or time limit, and yield all up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
-        ends = [worker.started + worker.limit for worker in busy.values() if worker.limit is not None]
-        left = max(0.0, min(ends) - time.monotonic()) if ends else None
+        ends = [worker.limit - worker.spent() for worker in busy.values() if worker.limit is not None]
+        left = max(LOOKS_EVERY, min(ends)) if ends else None
         ready = wait(list(busy), left) if busy else []
         for connection, worker in busy.items():
             if connection in ready:
                 done = worker.result()
-            elif worker.limit is not None and time.monotonic() >= worker.started + worker.limit:
+            elif worker.limit is not None and is_over(worker.limit, worker.spent(), worker.waited()):
                 late = Failure(f"not finished within {worker.limit:g} s", unfinished=True)
-                done = Done(worker.key, late, worker.limit)
+                done = Done(worker.key, late, worker.limit, max(worker.limit, worker.spent()))
                 worker.end()
             else:
                 continue
@@ -171,34 +176,52 @@ class Workers:
 class _Worker:
     """A process and the connection to it; ``key`` identifies its current work, None while it is idle.
 
-    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) for it.
+    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) of processor time for it.
     """
 
     def __init__(self, temporary: str) -> None:
         context = multiprocessing.get_context("spawn")  # no inherited state
         self.connection, other_end = context.Pipe()
+        self._spending, spending = context.Pipe(duplex=False)
+        self._published = self._before = 0.0
         self.key: Hashable | None = None
         self.owner = ""
         self.started = 0.0
         self.limit: float | None = None
         self.dead = False
-        self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
+        self._process = context.Process(target=_serve, args=(other_end, spending), daemon=True)
         self._errors = _Errors()
         # only this process handles Ctrl-C
         environment = ONE_THREAD | SAFE_PATH | {"TMPDIR": temporary}
         with interrupts_ignored(), _environment(environment), self._errors.written():
             self._process.start()
         other_end.close()
+        spending.close()
 
     def start(self, key: Hashable, message: bytes, owner: str) -> None:
-        self.key, self.owner, self.started = key, owner, time.monotonic()
+        self.key, self.owner, self.started, self._before = key, owner, time.monotonic(), self._total()
         with suppress(BrokenPipeError):  # result() reports the end of the process
             self.connection.send_bytes(message)
+
+    def waited(self) -> float:
+        """Return the time in s since the work was received."""
+        return time.monotonic() - self.started
+
+    def spent(self) -> float:
+        """Return the processor time in s of the work so far."""
+        return self._total() - self._before
+
+    def _total(self) -> float:
+        with suppress(OSError, EOFError):  # the process has ended
+            while self._spending.poll():
+                self._published = max(self._published, float(self._spending.recv_bytes()))
+        # while compiled code holds the interpreter, the process publishes nothing
+        return max(self._published, processor_time_of(self._process.pid))
 
     def result(self) -> Done:
         key, self.key = self.key, None
         try:
-            value = pickle.loads(self.connection.recv_bytes())
+            value, self._published = pickle.loads(self.connection.recv_bytes())
             self._errors.forward()
         except Exception:  # the engine has ended the process, or used its connection
             code = self._exit_code()
@@ -207,7 +230,7 @@ class _Worker:
             self.end()
             reason = ": ".join([f"its process ended unexpectedly ({cause})", *said[-1:]])
             value = Failure(reason)
-        return Done(key, value, time.monotonic() - self.started)
+        return Done(key, value, self.waited(), self.spent())
 
     def end(self) -> None:
         self.dead = True
@@ -218,6 +241,7 @@ class _Worker:
         self._process.join()
         self._errors.close()
         self.connection.close()
+        self._spending.close()
 
     def _exit_code(self) -> int | None:
         """Return the exit code of the process, None if it has none after ``FAREWELL``.
@@ -273,12 +297,13 @@ class _Errors:
         return text
 
 
-def _serve(connection: Connection) -> None:
+def _serve(connection: Connection, spending: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
     if hasattr(os, "setsid"):
         os.setsid()  # signals to the group of an engine's process stay there
     here = os.getpid()
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_publish, args=(spending,), daemon=True).start()
     sys.stdout = sys.stderr  # forwards the output of engines like their errors
     with suppress(OSError):  # closed by the caller
         os.dup2(STANDARD_ERROR, STANDARD_OUTPUT)
@@ -291,14 +316,21 @@ def _serve(connection: Connection) -> None:
             if os.getpid() != here:  # a copy that an engine has forked must not answer too
                 os._exit(1)
             try:
-                answer = pickle.dumps(value)
+                answer = pickle.dumps((value, processor_time()))
             except Exception as error:
-                answer = pickle.dumps(Failure(f"cannot send its result back: {error}"))
+                answer = pickle.dumps((Failure(f"cannot send its result back: {error}"), processor_time()))
             connection.send_bytes(answer)
     except EOFError:
         pass
     except OSError:  # an engine has closed the connection
         os._exit(1)
+
+
+def _publish(spending: Connection) -> None:
+    with suppress(OSError):  # an engine has closed the connection, or the parent has ended
+        while True:
+            spending.send_bytes(str(processor_time()).encode())
+            time.sleep(LOOKS_EVERY)
 
 
 def _end_with_parent() -> None:

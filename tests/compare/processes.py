@@ -65,6 +65,9 @@ class WorkerHere:
         key, self.key = self.key, None
         return workers.Done(key, workers.attempted(self.message[0], *self.message[1]), 0.0)
 
+    def spent(self) -> float:
+        return 0.0
+
     def end(self) -> None:
         pass
 

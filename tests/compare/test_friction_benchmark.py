@@ -14,6 +14,7 @@ from compare.cli import app as cli
 from compare.diagnosis import friction_benchmark
 from compare.diagnosis.run import benchmarked
 from compare.engines import reference
+from compare.run.statuses import FINE, NOTHING_SHOWN, SOMETHING_DIFFERS
 
 FILE = Path(friction_benchmark.__file__)
 BENCHMARK = runpy.run_path(str(FILE))
@@ -103,6 +104,25 @@ def test_the_file_runs_alone_and_prints_json(tmp_path):
     grades = {case["name"]: case["grade"] for case in results["cases"]}
     assert grades["creep for 100 s at half load"] == "exact"
     assert grades["heading, 10°"] == grades["ramp, μ = 0.1, tan θ = 1.5 μ"] == "fails"
+
+
+@pytest.mark.parametrize(
+    ("error", "status"), [(NotImplementedError, NOTHING_SHOWN), (RuntimeError, SOMETHING_DIFFERS)]
+)
+def test_an_engine_that_raises_in_every_case_has_no_status_of_success(error, status):
+    def simulate(case, times):
+        raise error("no")
+
+    results = BENCHMARK["run"](simulate)
+    assert BENCHMARK["status"](results) == status
+    assert results["cases"][0]["reason"] == f"{error.__name__}('no')"
+
+
+def test_half_of_the_cases_are_enough():
+    exact = benchmarked(reference)["cases"]
+    for left_out, status in ((11, FINE), (12, NOTHING_SHOWN)):
+        score = {"exact": len(exact) - left_out, "fails": 0, "not simulated": left_out}
+        assert BENCHMARK["status"]({"score": score}) == status
 
 
 def test_a_number_that_is_missing_fails():

@@ -14,7 +14,7 @@ import pytest
 from processes import PATIENCE, ROOT, work_here
 
 from compare.claims.claim import THEORY
-from compare.pytest_plugin import NOTHING_MEASURED, NOTHING_SHOWN
+from compare.run.statuses import NOTHING_SHOWN, STATUSES
 from compare.studies import STUDIES
 
 ENGINES = """
@@ -22,6 +22,7 @@ import time
 from dataclasses import replace
 import numpy as np
 import reference_model
+from compare.engines import UnsupportedSystemError
 from reference_model import Phase, Solution, Trajectory
 
 def resting(system, state, times, *, tolerance=1e-9):
@@ -42,6 +43,9 @@ def hanging(*arguments, **options):
 def picky(system, *arguments, tolerance=1e-9):
     assert system.disc_speed < 2.0, "no fast discs"
     return reference_model.simulate(system, *arguments, tolerance=tolerance)
+
+def refusing(*arguments, tolerance=1e-9):
+    raise UnsupportedSystemError("mine is closed")
 
 def sliding(*arguments, tolerance=1e-9):
     return reference_model.simulate(*arguments, tolerance=tolerance)
@@ -134,7 +138,8 @@ def test_every_claim_of_a_level_is_collected_once(tmp_path):
     [
         (("reference",), (), 0),
         (("reference",), ("--min-conclusive", "1000"), NOTHING_SHOWN),
-        (("reference", "mine:sliding"), (), NOTHING_MEASURED),
+        (("reference", "mine:sliding"), (), NOTHING_SHOWN),
+        (("mine:refusing",), (), NOTHING_SHOWN),
     ],
 )
 def test_the_status_reports_missing_measurements_without_a_terminal_plugin(
@@ -189,8 +194,9 @@ def test_a_study_out_of_time_fails_no_claim(quick, tmp_path):
     assert len(unfinished) == (0 if quick else 1)  # the claim that was measured then
     remedy = "use --level full" if quick else "use a larger --study-limit"
     reason = f"the study fig04 takes longer than 1 s with mine:hanging; {remedy}"
-    assert f"not attempted: {reason} ({len(cases) - len(unfinished)} claims)" in output
-    assert status == (NOTHING_MEASURED if quick else NOTHING_SHOWN)
+    assert f"not measured: {reason} ({len(cases) - len(unfinished)} claims)" in output
+    assert f"mine:hanging: measured 0 of {len(cases)} claims (0 %)" in output
+    assert status == NOTHING_SHOWN
 
 
 def test_an_exception_costs_only_the_claims_that_need_the_motion(tmp_path):
@@ -212,7 +218,7 @@ def test_claims_that_other_processes_measure_are_reported_once(tmp_path):
     status, output, cases = judge(
         tmp_path, "sticking-domain", "mine:sliding", options=("-n", "1"), run=run_by_itself
     )
-    assert status == NOTHING_MEASURED
+    assert status == NOTHING_SHOWN
     assert set(cases) == set(CLAIMS["sticking-domain"])
     assert {tag for tag, _ in cases.values()} == {"skipped"}
     assert "not attempted: mine:sliding does not simulate stick (" in output
@@ -258,6 +264,12 @@ def test_the_example_passes_with_its_error_and_reports_what_it_cannot_simulate(e
         assert f"not attempted: example:runge_kutta does not simulate {lacking} (" in output
 
 
+def test_the_documents_contain_the_statuses_once():
+    table = "\n".join(f"| {status} | {meaning} |" for status, meaning in STATUSES.items())
+    text = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "docs").glob("*.md")))
+    assert text.count(table) == text.count("| 130 |") == 1
+
+
 FILE = str(ROOT / "compare" / "studies" / "pin" / "fig05" / "__init__.py")
 USAGE, NOTHING = pytest.ExitCode.USAGE_ERROR, pytest.ExitCode.NO_TESTS_COLLECTED
 BY_ITS_NAME = "select a study by its name, with --pyargs compare --study"
@@ -285,6 +297,26 @@ def test_invalid_options_are_rejected_at_once(arguments, expected, sentence, tmp
     status, output, _ = run(tmp_path, *arguments.split())
     assert status == expected
     assert sentence in output
+
+
+REPEATING = """
+def pytest_addoption(parser):
+    parser.addoption("--count", type=int, default=1)
+
+def pytest_generate_tests(metafunc):
+    pass
+"""
+
+
+@pytest.mark.parametrize("option", ["--count=2", "--count 2"])
+def test_an_option_for_test_functions_is_rejected_not_ignored(option, tmp_path, monkeypatch):
+    (tmp_path / "repeating.py").write_text(REPEATING)
+    monkeypatch.syspath_prepend(tmp_path)
+    arguments = ["-p", "repeating", "--pyargs", "compare", "--engine", "exudyn", "--collect-only", "-q"]
+    assert run(tmp_path, *arguments, "--study", "block")[0] == 0
+    status, output, _ = run(tmp_path, *arguments, *option.split())
+    assert status == USAGE
+    assert "--count: it applies to test functions, but claims are none; omit it" in output
 
 
 OTHERS = {

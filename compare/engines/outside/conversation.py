@@ -12,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import threading
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -28,6 +29,7 @@ from compare.engines.outside.json_lines import (
     most_bytes,
     question,
 )
+from compare.engines.outside.processor_time import PROGRAMS, is_over, processor_time_of
 from compare.engines.outside.program import own_name
 from compare.output.outside_text import cause_of_end, printable
 from reference_model.systems import System
@@ -35,6 +37,7 @@ from reference_model.trajectory import Trajectory
 
 GREETING_LIMIT = 60.0  # time limit in s for the first line; includes compilation
 GREETING_BYTES = 100_000
+TICK = 0.1  # shortest time in s between two looks at a program's processor time
 FAREWELL = 1.0  # time in s for a program to end after its input is closed
 AT_ONCE = 1 << 18
 LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept of a program's standard error
@@ -140,6 +143,7 @@ class Conversation:
         )
         streams = self._process.stdin, self._process.stdout, self._process.stderr
         self._input, self._output, errors = (stream for stream in streams if stream is not None)
+        PROGRAMS.add(self._process.pid)
         self._guard = _guard_of(self._process.pid) if POSIX else None
         self._errors = _LastWords(errors)
         try:
@@ -169,6 +173,7 @@ class Conversation:
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(patience)
         self._kill()
+        PROGRAMS.discard(self._process.pid)  # its time counts as that of an ended process from now on
         self._process.wait()
         self._output.close()
         if self._guard is not None:
@@ -184,14 +189,20 @@ class Conversation:
 
     def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
         """Write ``line`` and return the next line; end the program unless it writes exactly one."""
-        late = threading.Event()
+        here, late = threading.Event(), threading.Event()
+        began, before = time.monotonic(), processor_time_of(self._process.pid)
 
-        def expire() -> None:
-            late.set()
-            self._kill()
+        def spent() -> float:
+            return processor_time_of(self._process.pid) - before
 
-        watch = threading.Timer(min(limit, threading.TIMEOUT_MAX), expire)
-        watch.daemon = True
+        def watched() -> None:
+            while not here.wait(min(max(TICK, limit - spent()), threading.TIMEOUT_MAX)):
+                if is_over(limit, spent(), time.monotonic() - began):
+                    late.set()
+                    self._kill()
+                    return
+
+        watch = threading.Thread(target=watched, daemon=True)
         watch.start()
         try:
             with suppress(BrokenPipeError):  # _read detects the end of the program
@@ -201,7 +212,7 @@ class Conversation:
             self.end()
             raise
         finally:
-            watch.cancel()
+            here.set()
         watch.join()
         in_time = not late.is_set()
         if answer.endswith(b"\n") and in_time and answer.count(b"\n") == 1:

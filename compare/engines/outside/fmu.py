@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.engines.engine import Engine, UnsupportedSystemError
+from compare.engines.engine import DeclaredLackError, Engine
 from compare.engines.outside.stick_events import NAMES_OF_POINTS, Events, PointRests, StickEvents, tells_stick
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import COLUMNS, DiscOnDisc, FloatArray, PinOnDisc, System
@@ -61,7 +61,7 @@ class Fmu:
     ) -> Trajectory:
         """Return the motion, with communication steps up to ``step`` (s) if given, else from time to time.
 
-        Raises ``UnsupportedSystemError`` if the model lacks a parameter, and ``FmuError`` if a call fails.
+        Raises ``DeclaredLackError`` if the model lacks a parameter, and ``FmuError`` if a call fails.
         """
         name, model = Path(self.file).name, _model(self.file)
         at, state = np.array(times, dtype=float), np.asarray(initial_state, dtype=float)
@@ -144,7 +144,7 @@ def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> 
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     lacking = [name for name, value in parameters.items() if name not in variables and value != 0.0]
     if lacking:
-        raise UnsupportedSystemError(f"the model lacks {', '.join(lacking)}")
+        raise DeclaredLackError(f"the model lacks {', '.join(lacking)}")
     starts = zip((name for name, _ in COLUMNS[type(system)]), state.tolist(), strict=True)
     known = {name: value for name, value in parameters.items() if name in variables}
     if isinstance(system, DiscOnDisc) and POINTS in variables:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.engines.engine import KINDS, Engine, UnsupportedSystemError
+from compare.engines.engine import KINDS, DeclaredLackError, Engine, UnsupportedSystemError
 from compare.engines.outside.json_lines import question
 from compare.engines.registry import Scheme, register_scheme
 from compare.output.outside_text import printable
@@ -25,6 +25,11 @@ from reference_model.trajectory import Trajectory
 INDEX = "plan.json"
 
 FORMAT = 1
+
+POINTS = "separate columns by commas, and write decimal points, not decimal commas"
+
+
+ROUNDED = 5e-12  # largest relative error of a time with 12 digits
 
 
 class BadFileError(RuntimeError):
@@ -47,12 +52,12 @@ class MotionFiles:
     ) -> Trajectory:
         """Return this motion from its file.
 
-        Raises ``UnsupportedSystemError`` if the motion is not in the plan or its file is incomplete, and
-        ``BadFileError`` if the file is invalid.
+        Raises ``DeclaredLackError`` if the motion is not in the plan, ``UnsupportedSystemError`` if its file is
+        incomplete, and ``BadFileError`` if the file is invalid.
         """
         name = name_of(question(system, initial_state, times, accuracy))
         if name not in _names(self.folder):
-            raise UnsupportedSystemError(
+            raise DeclaredLackError(
                 f"{Path(self.folder).name} does not contain this motion: {INDEX} has another version, "
                 "or the motion depends on answers to others"
             )
@@ -75,10 +80,15 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
         raise BadFileError(f"{place} cannot be read: {error.strerror}") from None
     described = (("t", "s"), *COLUMNS[type(system)])
     columns = [name for name, _ in described]
+    for number, line in enumerate(lines, 1):
+        if ";" in line:
+            raise BadFileError(f"{place}, line {number}, contains a semicolon: {POINTS}")
     rows = [(number, line.split(",")) for number, line in enumerate(lines, 1) if line.strip()]
     order = list(range(len(columns)))
     if rows and not any(map(_is_number, rows[0][1])):
         order = _order(rows.pop(0)[1], described, place)
+    if len(rows) > len(times):  # an event may have two rows, before and after it
+        rows = [row for i, row in enumerate(rows) if i + 1 == len(rows) or row[1][0] != rows[i + 1][1][0]]
     found = len(rows)
     if found < len(times) or (found == len(times) and len(rows[-1][1]) < len(columns)):
         whole = found - (1 if rows and len(rows[-1][1]) < len(columns) else 0)
@@ -91,7 +101,8 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
     for i, (number, row) in enumerate(rows):
         if len(row) != len(columns):
             raise BadFileError(
-                f"{place}, line {number}, has {len(row)} numbers: it must have {len(columns)}, {', '.join(columns)}"
+                f"{place}, line {number}, has {len(row)} numbers: it must have {len(columns)}, {', '.join(columns)}; "
+                f"{POINTS}"
             )
         try:
             numbers[i] = row
@@ -102,7 +113,8 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
         if not np.isfinite(numbers[i]).all():
             raise BadFileError(f"{place}, line {number}, has a number that is not finite")
     numbers = numbers[:, order]
-    return Trajectory(system, numbers[:, 0], numbers[:, 1:])
+    same = np.isclose(numbers[:, 0], times, rtol=ROUNDED, atol=0.0)
+    return Trajectory(system, np.where(same, times, numbers[:, 0]), numbers[:, 1:])
 
 
 def _order(header: Sequence[str], columns: Sequence[tuple[str, str]], place: str) -> list[int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims import ROUNDING, WORKING, ByEngine, Data, Figures, Measured, Study, refined
 from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import DeclaredLackError, Engine
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
 from reference_model import PowerBalance, Trajectory, power_balance, sticking_radius
 from reference_model.formulas.pin import whirl_radius
@@ -157,7 +157,7 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
     if engine.contact_only and not motion.contact_alone:
         return None
     if not engine.simulates(motion.system):
-        raise UnsupportedSystemError(engine.lacking(one.system for one in all_motions().values()))
+        raise DeclaredLackError(engine.lacking(one.system for one in all_motions().values()))
     balances: dict[float, PowerBalance] = {}
     quadrature: list[float] = []
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from compare.claims import ByEngine, Figures, Measured, Study, refined
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import DeclaredLackError, Engine
 from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.free_bodies import on_a_table
 from compare.studies.toolkit.random_systems import state_of
@@ -228,7 +228,7 @@ def on_points(engine: Engine, points: int) -> Measured:
 )
 def on_full_disc(engine: Engine) -> Measured:
     if engine.name not in FULL_DISCS:
-        raise UnsupportedSystemError(f"{engine.name} has no model of a full disc")
+        raise DeclaredLackError(f"{engine.name} has no model of a full disc")
     follow, quadrature = FULL_DISCS[engine.name]
     return compared(follow, FULL, WHILE_SLIDING, "full disc", error=quadrature)
 

@@ -77,25 +77,38 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     totals, *diagnoses = process.stdout.partition(first)[2].splitlines()
     assert totals == f" ({folder / 'index.html'})"
     assert [line.partition(":")[0] for line in diagnoses] == ["good", "failing"]
-    assert diagnoses[1].startswith("failing: Undecided: no result for law: the step size became too small")
+    assert diagnoses[1].startswith(
+        "failing: Engine failed: no result for law: the step size became too small"
+    )
 
 
 MEASURED = "check against independent evidence"
 LACKS = "good does not simulate a disc on single points or a disc on a continuous ring"
+NOTHING = "too little to show anything: {}: nothing was measured, because no claim applies\n"
+SHARE = "good: measured {} of {} claims ({} %)\n"
 REPORTS = [
-    ("inconclusive", 3, "0 checks against independent evidence agree, 0 differ, 1 inconclusive ("),
+    (
+        "inconclusive",
+        3,
+        f"{SHARE.format(0, 1, 0)}0 checks against independent evidence agree, 0 differ, 1 inconclusive (",
+    ),
     (
         "partly",
         0,
-        f"partly good not simulated: {LACKS}\n1 {MEASURED} agrees, 0 differ, 0 inconclusive, 1 not simulated (",
+        f"partly good not simulated: {LACKS}\n{SHARE.format(1, 1, 100)}1 {MEASURED} agrees, 0 differ, "
+        "0 inconclusive, 1 not simulated (",
     ),
     ("undrawable", 1, "undrawable: the figures could not be drawn: KeyError: 'radius'"),
-    ("asking --engine hostile:refusing", 4, "nothing was measured with hostile:refusing\n"),
-    ("asking --engine good --engine hostile:refusing", 4, "nothing was measured with hostile:refusing\n"),
-    ("of-another --engine good", 4, "nothing was measured with good\n"),
-    ("both --min-conclusive 2", 0, f"1 {MEASURED} and 2 others agree, "),
+    ("asking --engine hostile:refusing", 3, NOTHING.format("hostile:refusing")),
+    ("asking --engine good --engine hostile:refusing", 3, NOTHING.format("hostile:refusing")),
+    ("of-another --engine good", 3, NOTHING.format("good")),
+    (
+        "both --min-conclusive 2",
+        0,
+        f"{SHARE.format(2, 2, 100)}1 {MEASURED} and 2 others agree, ",
+    ),
     ("both --min-conclusive 3", 3, "2 claims agree, but --min-conclusive requires 3\n"),
-    ("silent --engine good", 4, "silent good: claims not measured, without a reason: One is itself\n"),
+    ("silent --engine good", 1, "silent good failed: the motion does not allow this measurement\n"),
 ]
 
 
@@ -114,7 +127,10 @@ def test_an_engine_that_ends_its_process_leaves_no_report(folder):
 def test_a_report_without_differences_prints_its_totals_and_nothing_else(report, folder, capsys):
     assert report("--level quick --engine good --output new/folder", fake.ALL) == 0
     page = os.path.join("new", "folder", "index.html")
-    assert capsys.readouterr() == (f"1 {MEASURED} agrees, 0 differ, 0 inconclusive ({page})\n", "")
+    assert capsys.readouterr() == (
+        f"{SHARE.format(1, 1, 100)}1 {MEASURED} agrees, 0 differ, 0 inconclusive ({page})\n",
+        "",
+    )
     assert studies_in(folder / "new" / "folder") == ["agreement"]
 
 

@@ -22,6 +22,7 @@ from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_r
 from compare.diagnosis.run import recorded_rows
 from compare.diagnosis.scaling import Scales
 from compare.engines import COARSENING, USUAL_TOLERANCE, BadTrajectoryError, Engine, exudyn, plain, reference
+from compare.run.workers import Failure
 from reference_model import Trajectory
 
 RIGHT = engine("right")
@@ -55,7 +56,7 @@ def deaf(system, start, times, *, tolerance, step):
 LAW, MOTION = "Not Coulomb friction: ", "Wrong motion: "
 BOX = f"{LAW}friction is a box with a separate limit for each axis"
 
-FORCES = ("law", "scales", "support", "repeat")
+FORCES = ("law", "scales", "support", "repeat", "nonlinear")
 
 NAMED_BY_FORCES = {
     engine("box", law=box): f"{BOX}.",
@@ -110,6 +111,15 @@ NAMED_BY_FORCES = {
     ): f"{LAW}the coefficient μ is 10 % too large for a mass above 2.9 kg or disc speed above 3.2 rad/s.",
     engine("right at 1 kg", limit=lambda system, *_: 1.0 if system.mass == 1.0 else 1.05): (
         f"{LAW}the coefficient μ is 5.0 % too large except for 1 kg, 0.2 N and 1 m/s."
+    ),
+    engine(
+        "clip of the impulse", limit=lambda system, _, step: min(1.0, 0.04 / (system.friction_force * step))
+    ): (f"{LAW}the friction force is limited to 10 N."),
+    replace(mistaken("no hardening", lambda system: {"hardening": 0.0}), kinds=("pin",)): (
+        f"{MOTION}the hardening force is missing; declare nonlinear = False if the engine lacks it."
+    ),
+    replace(mistaken("no stop", lambda system: {"stop_stiffness": 0.0}), kinds=("pin",)): (
+        f"{MOTION}the stop force is missing; declare nonlinear = False if the engine lacks it."
     ),
     engine("clipped", fastest=2.0): (
         f"{MOTION}a body that starts at 90 m/s moves at 2.0 m/s at once: speeds are limited to 2.0 m/s."
@@ -217,6 +227,29 @@ def test_an_unknown_law_is_described_by_its_largest_deviation():
     )
     assert row.verdict == WRONG
     assert " times μN at " in found
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.0, UNDECIDED), (0.5, WRONG)])
+def test_friction_that_changes_far_from_the_axis_is_not_passed(share, found):
+    def on_a_plate(system, start, times, *, step):
+        inside = abs(complex(*start[:2])) < 50.0
+        friction = system.friction_force * (1.0 if inside else share)
+        return stepped(replace(system, friction_force=friction), start, times, step=step)
+
+    row, said = sentences(replace(RIGHT, function=on_a_plate), ("law", "far"))
+    size = "50 % too small" if share else "missing; refuse motions that leave the plate"
+    assert f"riction 100 m from the axis is {size}." in said
+    assert row.verdict == found
+
+
+@pytest.mark.parametrize(("motions", "verdict"), [(1, UNDECIDED), (2, RIGHT_VERDICT)])
+def test_less_than_half_of_the_parts_show_nothing(motions, verdict):
+    shown = Motion((1e-2, 5e-3, 2e-3, 1e-3), 3e-3, 1.0, 0.025, 0.1)
+    row = Row("any", motions=dict(list(dict.fromkeys(MOTIONS, shown).items())[:motions]))
+    row = run._with(run._with(row, "law", "no offset"), "lag", Failure("not finished", unfinished=True))
+    assert row.verdict == verdict
+    assert "Not measured: law: no offset." in row.sentences
+    assert ("Undecided: measured 1 of 3 parts (33 %)." in row.sentences) == (verdict == UNDECIDED)
 
 
 def test_chatter_that_falls_with_the_step_is_named_but_not_wrong():
@@ -388,9 +421,9 @@ def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == set(PROBES) - {"lag", "moments"}
     assert row.sentences[0].startswith(
-        "Undecided: no result for law, scales, creep, history, support, repeat: out of"
+        "Engine failed: no result for law, scales, creep, history, support, far, repeat, nonlinear: out of"
     )
-    assert row.verdict == UNDECIDED
+    assert row.verdict == WRONG
     assert set(run._probed(broken, run.Workers(1)).gaps) == {"law"}
 
 

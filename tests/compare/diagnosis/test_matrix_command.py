@@ -74,23 +74,23 @@ def test_an_engine_that_recognises_the_probes_is_caught_by_a_seed(
     assert cli.status(["matrix", "--engine", "cheating:simulate", "--output", "found", *options]) == status
 
 
-def test_an_engine_that_simulates_nothing_has_its_own_status(tmp_path, monkeypatch, capsys):
+def test_an_engine_that_refuses_everything_is_undecided(tmp_path, monkeypatch, capsys):
     """In worker processes, as the command usually runs."""
     (tmp_path / "refusing.py").write_text(
         "from compare.engines import UnsupportedSystemError\n"
         "def simulate(*arguments, **accuracy):\n    raise UnsupportedSystemError('nothing')\n"
     )
     monkeypatch.chdir(tmp_path)
-    assert cli.status(["matrix", "--jobs", "1", "--engine", "refusing:simulate", "--output", "found"]) == 4
-    assert "none of these motions can be simulated by refusing:simulate" in capsys.readouterr().err
+    assert cli.status(["matrix", "--jobs", "1", "--engine", "refusing:simulate", "--output", "found"]) == 3
+    assert "undecided: refusing:simulate (measured 0 of 1" in capsys.readouterr().err
 
 
 def test_a_broken_adapter_is_seen_first_and_not_measured(in_this_process, tmp_path, monkeypatch, capsys):
     (tmp_path / "broken.py").write_text("def simulate(system, *arguments, **accuracy):\n    system.gravity\n")
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    assert cli.status(["matrix", "--engine", "broken:simulate", "--output", "found"]) == 3
+    assert cli.status(["matrix", "--engine", "broken:simulate", "--output", "found"]) == 1
     why = "no result for two blocks: AttributeError: 'PinOnDisc' object has no attribute 'gravity'"
     printed = capsys.readouterr().out
-    assert printed.startswith(f"broken:simulate\n  Undecided: {why}")
-    assert len(printed.splitlines()) == 2  # no table without motions
+    assert printed.startswith(f"broken:simulate\n  Engine failed: {why}")
+    assert len(printed.splitlines()) == 4  # no table without motions

@@ -42,33 +42,6 @@ def test_an_engine_without_nonlinear_supports_rejects_them():
         compiled.simulate(hard[0], [0.1, 0.0, 0.0, 0.0], [0.0, 1.0])
 
 
-def reading(*names):
-    """Return an engine that reads only these parameters, and does not move."""
-
-    def simulate(pin, state, times, *, tolerance=1e-9):
-        assert all(getattr(pin, name) >= 0.0 for name in names)
-        states = np.tile(np.asarray(state, dtype=float), (len(times), 1))
-        return Trajectory(FIG5, np.array(times), states)
-
-    return Engine("mine", simulate)
-
-
-def reading_all(pin, state, times, *, tolerance):
-    assert vars(pin)
-    return reading().function(pin, state, times)
-
-
-@pytest.mark.parametrize("change", [{"hardening": 2.0}, {"stop_stiffness": 1.0, "stop_gap": 0.5}])
-def test_an_engine_that_never_reads_a_nonlinear_support_does_not_simulate_it(change):
-    motion = replace(FIG5, **change), [0.1, 0.0, 0.0, 0.0], [0.0, 1.0]
-    (ignored, *_) = change
-    with pytest.raises(UnsupportedSystemError, match=f"^mine never reads {ignored}$"):
-        reading("stiffness").simulate(*motion)
-    assert len(reading("stiffness", list(change)[-1]).simulate(*motion).times) == 2
-    assert len(reading("mass").simulate(FIG5, *motion[1:]).times) == 2
-    assert len(Engine("mine", reading_all).simulate(*motion).times) == 2
-
-
 @pytest.fixture
 def module(tmp_path, monkeypatch):
     """Return a function that writes a module with ``simulate`` and more code, and returns its engine."""

@@ -118,7 +118,7 @@ def test_better_verdicts_pass_but_a_missing_study_does_not(old, tmp_path, capsys
 
 def test_reports_without_verdicts_of_an_engine_do_not_pass(old, tmp_path, capsys):
     failed = written(tmp_path, engine=FAILING)
-    assert told(capsys, failed, failed)[0] == 4
+    assert told(capsys, failed, failed)[0] == 3
     assert told(capsys, failed, old)[0] == 1
 
 

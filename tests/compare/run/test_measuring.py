@@ -14,12 +14,13 @@ from compare.claims.measured import Measured
 from compare.claims.prose import Prose
 from compare.claims.study import Findings, Study
 from compare.cli.app import status
-from compare.engines import Engine, registry
+from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError, registry
 from compare.output.outside_text import Failure
 from compare.run.levels import LIMITS
 from compare.run.measuring import NO_CLAIM, PACE_STEPS, Course, measured, pace
 from compare.run.runner import run
 from compare.run.store import Drawing
+from compare.run.workers import Done
 
 STUDY = Study("partly-long", Prose("One short claim, one long, one impossible"), quick=True)
 
@@ -55,13 +56,26 @@ def test_a_claim_that_raises_or_would_take_too_long_is_a_gap():
     assert str(found.gaps[HEAVY]).startswith("stepping is too weak (test_measuring.py:")
 
 
+@pytest.mark.parametrize("error", [DeclaredLackError, UnsupportedSystemError])
+def test_only_a_refusal_beyond_the_declaration_is_a_gap(error):
+    study = Study("refused", Prose("A claim that an engine refuses"))
+
+    @study.claim("Nothing moves", resolution=1.0)
+    def refused(engine):
+        raise error("no offset")
+
+    found = study.measure(STEPPING)
+    assert found.not_simulated == ("no offset" if error is DeclaredLackError else "")
+    assert found.gaps == ({} if error is DeclaredLackError else {"Nothing moves": "no offset"})
+
+
 def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted():
     assert measured(STUDY, STEPPING).gaps.keys() == {HEAVY}
     assert measured(STUDY, fake_studies.GOOD, within=10.0).gaps.keys() == {HEAVY}
 
 
 def test_the_pace_is_the_time_for_a_second_of_motion(monkeypatch):
-    monkeypatch.setattr("time.perf_counter", iter([0.0, 4.0]).__next__)
+    monkeypatch.setattr("compare.run.measuring.processor_time", iter([0.0, 4.0]).__next__)
     assert pace(replace(STEPPING, name="paced")) == 4.0 / (PACE_STEPS * 1e-3)
 
 
@@ -74,7 +88,7 @@ def test_a_process_starts_again_after_a_failure_and_only_the_quick_level_omits_c
         with suppress(StopIteration):
             while True:
                 (_, _, (part,), _, left), _ = steps.send(found)
-                asked, found = [*asked, (part, left)], result
+                asked, found = [*asked, (part, left)], Done(part, result, 0.0)
         return asked
 
     started = [(NO_CLAIM, math.inf), ("short", within)]
@@ -110,13 +124,14 @@ def test_a_failed_claim_is_shown_alone(reporting, capsys):
     assert reporting("--engine", "stepping", "--resume")[0] == 1  # it is attempted again
 
 
-def test_a_claim_that_is_not_attempted_at_the_quick_level_leaves_the_status(reporting, tmp_path, capsys):
+def test_a_claim_that_is_not_attempted_at_the_quick_level_counts_as_not_measured(reporting, tmp_path, capsys):
     light = replace(STUDY, declared=[one for one in STUDY.declared if one.sentence != HEAVY])
     ended, results, cases = reporting("--level", "quick", "--engine", "stepping", study=light)
     assert ended == 0
     out = capsys.readouterr().out
     assert "partly-long stepping not simulated: would take about " in out
     assert f"1 not simulated ({'out'}" in out
+    assert "stepping: measured 1 of 2 claims (50 %)" in out
     assert [claim["id"] for claim in results["studies"][0]["claims"]] == ["partly-long/short"]
     assert results["studies"][0]["units"]["stepping"]["reason"].startswith("would take about ")
     assert [case.get("name") for case in cases if case.find("skipped") is not None] == [LONG]
@@ -130,18 +145,29 @@ def test_a_claim_that_is_not_attempted_at_the_quick_level_leaves_the_status(repo
     assert len(results["studies"][0]["claims"]) == 2
 
 
+def lacking(engine):
+    raise DeclaredLackError("no heavy bodies")
+
+
+@pytest.mark.parametrize("second", [heavy, lacking])
 @pytest.mark.parametrize("needed", ["short", "heavy"])
 def test_curves_of_an_engine_with_gaps_are_drawn_unless_the_figure_needs_a_missing_claim(
-    needed, tmp_path, in_this_process
+    needed, second, tmp_path, in_this_process
 ):
     drawn_for = []
+    declared = [replace(one, function=second) if one.function is heavy else one for one in STUDY.declared]
 
     def draw(data):
         drawn_for.append([name for name, arrays in data.items() if arrays[needed].size])
         return {}
 
-    study = replace(STUDY, provided={"figures": draw, "curves": lambda: {"short": [2.0], "heavy": [3.0]}})
-    result = run((study,), (STEPPING,), folder=tmp_path, quick=True)
-    assert result.outcomes[STUDY.name, "stepping"].gaps.keys() == {LONG, HEAVY}
+    study = replace(
+        STUDY,
+        declared=declared,
+        provided={"figures": draw, "curves": lambda: {"short": [2.0], "heavy": [3.0]}},
+    )
+    result = run((study,), (STEPPING,), folder=tmp_path, quick=second is heavy)
+    missing = {LONG, HEAVY} if second is heavy else set()
+    assert result.outcomes[STUDY.name, "stepping"].gaps.keys() == missing
     assert isinstance(result.drawings[STUDY.name], Drawing)
     assert drawn_for[-1] == (["theory", "stepping"] if needed == "short" else ["theory"])

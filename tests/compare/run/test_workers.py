@@ -21,11 +21,13 @@ from work import (
     leave_a_folder_and,
     raise_it,
     speak,
+    spend,
     spoil,
     start_a_child,
 )
 
 from compare.engines import engines
+from compare.engines.outside.processor_time import is_over
 from compare.run import workers as module
 from compare.run.workers import Failure, Workers
 
@@ -87,6 +89,30 @@ def test_work_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
     assert next(looks) > 9
     assert late.value == Failure("not finished within 1000 s", unfinished=True)
     assert (touched.value, late.seconds, following.value) == (None, limit, 4)
+
+
+@pytest.mark.skipif(
+    not hasattr(time, "pthread_getcpuclockid"), reason="clocks of processes are a POSIX thing"
+)
+def test_limits_count_the_processor_time_of_the_process_and_its_programs(workers):
+    program = f"{sys.executable} -c 'import time; t = time.process_time() + 0.5\nwhile time.process_time() < t: pass'"
+    for function, arguments in ((spend, (0.5,)), (os.system, (program,))):
+        workers.submit("", function, *arguments, limit=60.0)
+        (done,) = workers.finished()
+        assert 0.4 < done.spent < 3.0
+        assert done.seconds >= 0.4
+    workers.submit("", spend, 30.0, limit=0.5)
+    (late,) = workers.finished()
+    assert late.value == Failure("not finished within 0.5 s", unfinished=True)
+    assert 0.5 <= late.spent < 5.0
+
+
+@pytest.mark.parametrize(
+    ("spent", "waited", "over"),
+    [(9.9, 9.9, False), (9.9, 200.0, False), (10.0, 200.0, True), (0.1, 9.9, False), (0.1, 10.0, True)],
+)
+def test_a_busy_process_may_wait_for_a_loaded_machine_but_an_idle_one_may_not(spent, waited, over):
+    assert is_over(10.0, spent, waited) == over
 
 
 def test_work_that_cannot_be_sent_is_reported(workers):

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 
 
 def last_words(status):
@@ -48,3 +49,10 @@ def spoil(module):
 
 def start_a_child():
     return subprocess.Popen(["sleep", "3600"]).pid
+
+
+def spend(seconds):
+    """Use the processor for ``seconds``."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass

@@ -9,7 +9,7 @@ import numpy as np
 import compare.studies.disc.fig11.theory as theory
 from compare.claims import WORKING, Measured, Measurement, answers_of, asked, known, refined
 from compare.claims.parameters import FIG8, at_each
-from compare.engines import Engine, StatesOnly, UnsupportedSystemError, reference
+from compare.engines import DeclaredLackError, Engine, StatesOnly, reference
 from compare.studies.disc.fig11.theory import STUDY
 from compare.studies.disc.fig11.whirl import GROWTH_NOTE, growth
 from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
@@ -137,7 +137,7 @@ NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 )
 def points_rest(engine: Engine) -> Measured:
     if isinstance(_run(engine, OF_RESTS), StatesOnly):
-        raise UnsupportedSystemError(f"{engine.name} does not report when single points rest")
+        raise DeclaredLackError(f"{engine.name} does not report when single points rest")
     predicted = rests_of_points(_reference())
 
     def rests(tolerance: float) -> FloatArray:

@@ -10,7 +10,7 @@ import compare.output.figures as plots
 import compare.studies.drivetrain.coupled_clutches.theory as theory
 from compare.claims import ByEngine, Data, Figures, Measured, Study, observed_exponent
 from compare.claims.parameters import at_each
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import DeclaredLackError, Engine
 from compare.output.figures import Axes, axis, engine_style, engines_in, new_figure
 from compare.studies.drivetrain.coupled_clutches.theory import EPSILONS, exact, published, with_our_contact
 from compare.studies.toolkit.torsional_chain import STUCK
@@ -71,7 +71,7 @@ def _implicit(engine: Engine, step: float) -> theory.Run:
 
 def _check_has_epsilon(engine: Engine) -> None:
     if _is_native(engine):
-        raise UnsupportedSystemError("Exudyn's own connector sticks by bristles and has no ε")
+        raise DeclaredLackError("Exudyn's own connector sticks by bristles and has no ε")
 
 
 HALVED = (

@@ -10,7 +10,7 @@ import numpy as np
 import compare.studies.engines.trajectories.theory as theory
 from compare.claims import TRUTH, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import at_each, components_of, parameters_of
-from compare.engines import Engine, UnsupportedSystemError
+from compare.engines import DeclaredLackError, Engine
 from compare.studies.engines.trajectories.drawn import DRAWN, Drawn
 from compare.studies.engines.trajectories.theory import Motion
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
@@ -33,7 +33,7 @@ def together(measure: Measure) -> MeasureAll:
             return None
         if not all(engine.simulates(motion.system) for motion in motions):
             # One sentence states everything that is missing, instead of one per claim.
-            raise UnsupportedSystemError(engine.lacking(motion.system for motion in theory.MOTIONS.values()))
+            raise DeclaredLackError(engine.lacking(motion.system for motion in theory.MOTIONS.values()))
         parts = [part for motion in motions if (part := measure(engine, motion)) is not None]
         return pooled(parts) if parts else None
 

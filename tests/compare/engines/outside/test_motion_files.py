@@ -9,7 +9,7 @@ from compare.claims.parameters import FIG5, FIG11
 from compare.cli.trajectory_files import write_csv
 from compare.engines import BadTrajectoryError, UnsupportedSystemError, engines, known_name
 from compare.engines.outside.json_lines import question
-from compare.engines.outside.motion_files import BadFileError
+from compare.engines.outside.motion_files import POINTS, BadFileError
 from compare.run.plan import write_plan
 from reference_model import simulate
 
@@ -59,6 +59,24 @@ def test_a_motion_is_read_back_to_the_last_bit_with_without_or_with_another_head
     np.testing.assert_array_equal(answer(change).states, answer.exact.states)
 
 
+def with_two_rows_at_the_event(text):
+    rows = text.splitlines()
+    return "\n".join([*rows[:2], rows[2].replace(",", ",9"), *rows[2:]])
+
+
+def with_12_digits(text):
+    head, *rows = text.splitlines()
+    rounded = (",".join(f"{float(word):.12g}" for word in row.split(",")) for row in rows)
+    return "\n".join([head, *rounded])
+
+
+@pytest.mark.parametrize(("change", "digits"), [(with_two_rows_at_the_event, 0.0), (with_12_digits, 5e-12)])
+def test_what_simulators_write_is_accepted(change, digits, answer):
+    found = answer(change)
+    np.testing.assert_array_equal(found.times, TIMES)
+    np.testing.assert_allclose(found.states, answer.exact.states, rtol=digits)
+
+
 def test_the_engine_is_named_after_its_folder_and_supports_the_planned_kinds(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (engine,) = engines(["files:motions"])
@@ -106,8 +124,9 @@ def test_a_missing_motion_is_unsupported_not_wrong(change, reason, answer, folde
         (
             with_line(2, "1,2,3,4,5,6"),
             BadFileError,
-            ", line 3, has 6 numbers: it must have 5, t, x, y, vx, vy",
+            f", line 3, has 6 numbers: it must have 5, t, x, y, vx, vy; {POINTS}",
         ),
+        (lambda text: text.replace(",", ";"), BadFileError, f", line 1, contains a semicolon: {POINTS}"),
         (with_line(2, "1,2,3,4,x"), BadFileError, ", line 3, does not consist of numbers: '1,2,3,4,x'"),
         (with_line(2, "0.3,2,nan,4,5"), BadFileError, ", line 3, has a number that is not finite"),
         (with_line(2, "0,2,3,4,5"), BadTrajectoryError, "times[1] = 0.0 s: expected 0.3333333333333333 s"),
