@@ -5,18 +5,21 @@ integration of the plain equations with events, the return map of releases, or s
 ``docs/verdicts.md`` lists these claims.
 """
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from plain_slip import slide
+from processes import ROOT
 from scipy.optimize import brentq, root
 from studies_under_test import engine_named
 
 from compare.claims.error_estimates import TIGHTEST, TRUTH
 from compare.claims.linearised_flow import rotated
 from compare.claims.parameters import FIG5, FIG5_STARTS
+from compare.studies import STUDIES
 from compare.studies.disc.fig08 import study as fig08
 from compare.studies.disc.fig09 import growth_and_stick, steady_motions, theory
 from compare.studies.disc.fig11 import offsets
@@ -226,6 +229,15 @@ def test_lasting_stick_phases_begin_with_the_events_of_the_plain_equations():
 def test_the_quadrature_closes_the_power_balance_of_an_exact_motion(name):
     run = power_balance._run(engine_named("reference"), power_balance.all_motions()[name], TRUTH)
     assert power_balance._relative_residual(power_balance.power_balance(run)) < 5e-12
+
+
+def test_the_documentation_lists_claims_that_exist():
+    page = (ROOT / "docs" / "verdicts.md").read_text(encoding="utf-8")
+    table = page.partition("share code\n")[2].partition("\n## ")[0]
+    known = {one.identity(study.name, "") for study in STUDIES for one in study.declared}
+    listed = set(re.findall(r"`([a-z0-9-]+/[a-z0-9-]+)`", table))
+    assert len(listed) > 15
+    assert listed <= known
 
 
 @pytest.mark.parametrize("periodic", [False, True])

@@ -263,7 +263,7 @@ def test_failed_shooting_reports_the_parameters_where_it_stopped_and_the_next_gu
 
 
 def test_a_mean_has_an_error_below_a_millionth_or_is_refused_with_too_few_samples():
-    """With one sample, the mean was the initial position, 0.88 m away."""
+    """The mean of one sample is the initial position, 0.88 m away."""
     exact = whirl_orbit(FIG_5, samples=1024).mean
     for samples in (1, 2, 5, 8, 12):
         with pytest.raises(ValueError, match=f"samples = {samples}: too few for the mean of this orbit"):
