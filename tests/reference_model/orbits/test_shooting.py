@@ -282,4 +282,4 @@ def test_an_orbit_that_recurs_after_a_rotation_has_no_mean_and_needs_two_samples
     ):
         _ = replace(fold, turn=2.0).mean
     with pytest.raises(ValueError, match="samples = 1: it must be a whole number >= 2"):
-        modulated_cycle(replace(FIG11, offset=0.0), fold, samples=1)
+        modulated_cycle(replace(FIG_6, offset=0.0), fold, samples=1)
