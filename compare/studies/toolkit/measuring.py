@@ -66,7 +66,7 @@ def _summit(values: FloatArray, reach: int) -> float:
     inside[[0, -1]] = True
     found = [float(most)]
     # Between samples, a curve rises by about an eighth of its second difference.
-    for i in np.flatnonzero(inside & (values >= most - 0.5 * rise)):
+    for i in np.flatnonzero(inside & (values >= most - 0.5 * rise)).tolist():
         first = min(max(i - reach, 0), len(values) - 2 * reach - 1)
         places = first - i + np.arange(2 * reach + 1)
         curve = Polynomial.fit(places, values[first : first + len(places)], 2 * reach)
