@@ -55,8 +55,10 @@ def extremes(values: ArrayLike, *, periodic: bool = False) -> Measurement:
     values = np.asarray(values, dtype=float)
     if periodic:
         values = np.concatenate((values[-2 - REACH : -1], values, values[1 : 2 + REACH]))
-    both = [(-_summit(-values, reach), _summit(values, reach)) for reach in (REACH, REACH // 2)]
-    return Measurement(np.array(both[0]), np.abs(np.subtract(*both)))
+    fine, rough = (
+        np.array([-_summit(-values, reach), _summit(values, reach)]) for reach in (REACH, REACH // 2)
+    )
+    return Measurement(fine, np.abs(fine - rough))
 
 
 def _summit(values: FloatArray, reach: int) -> float:
