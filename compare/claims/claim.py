@@ -113,6 +113,7 @@ class Claim:
     - ``basis``: kind of evidence, by default ``usual_basis``.
     - ``implied_by``: sentence of a claim of the same study that implies this one for the same engine, or "".
     - ``answers``: True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
+    - ``friction``: False if the claim also agrees with half the friction force, as tests show.
     - ``named``: names for quotes of an element (its flat index), or of all (None), see ``compare.report.quotes``.
     - ``identity``: permanent id, such as "fig06/rests".
     - ``size``: scale of a relative error, broadcastable, required if the prediction is zero.
@@ -134,6 +135,7 @@ class Claim:
     basis: Basis = ""  # type: ignore[assignment]  # replaced by the usual one
     implied_by: str = ""
     answers: bool = False
+    friction: bool = True
     named: Mapping[str, int | None] = field(default_factory=dict)
     identity: str = ""
     size: FloatArray | None = None

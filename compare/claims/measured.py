@@ -26,7 +26,7 @@ class Measured:
     - ``system``, ``source``, ``resolution``: these override the study's and the declared ones.
     - ``parameters``, ``note``, ``named``: additions to the system's and the declared ones.
     - ``data``: arrays by name for the figures, or a function that returns them, whose failure costs no verdict.
-    - ``size``, ``answers``: as in ``Claim``.
+    - ``size``, ``answers``, ``friction``: as in ``Claim``.
     """
 
     predicted: ArrayLike
@@ -44,6 +44,7 @@ class Measured:
     named: Mapping[str, int | None] = field(default_factory=dict)
     size: ArrayLike | None = None
     answers: bool = False
+    friction: bool = True
 
     @property
     def axes(self) -> tuple[tuple[str, ...], ...]:

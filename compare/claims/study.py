@@ -109,6 +109,7 @@ class Declared:
     resolution: float | None = None
     note: str = ""
     implied_by: str = ""
+    friction: bool = True
     named: Mapping[str, int | None] = field(default_factory=dict)
     swept: Collection[str] = ()
     each: Mapping[str, Any] = field(default_factory=dict)
@@ -370,6 +371,7 @@ class Study:
             basis=declared.basis,
             implied_by=declared.implied_by.format(case) if declared.each else declared.implied_by,
             answers=measured.answers,
+            friction=declared.friction and measured.friction,
             named={**declared.named, **measured.named},
             identity=declared.identity(self.name, case),
             size=None if measured.size is None else np.asarray(measured.size),

@@ -6,6 +6,9 @@ of the difference the known uncertainties explain (ASME V&V 20-2009).
 
 from dataclasses import dataclass
 
+EXPECTED = 0.95
+"""Share of measurements within twice their standard uncertainty, if nothing but the known uncertainties acts."""
+
 
 @dataclass(frozen=True)
 class Validation:
@@ -18,6 +21,8 @@ class Validation:
     - ``data``, ``input``, ``numerical``: median standard uncertainties of the data, the parameters and the
       computation.
     - ``explained``: share of the ``count`` measurements with |E| at most twice their total uncertainty.
+    - ``factor``: ratio between the uncertainties that would explain a share of ``EXPECTED`` and the known ones.
+    - ``model``: standard deviation of an error of the theory that would have the same effect.
     """
 
     sentence: str
@@ -29,4 +34,6 @@ class Validation:
     input: float
     numerical: float
     explained: float
+    factor: float
+    model: float
     count: int

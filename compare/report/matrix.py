@@ -219,6 +219,11 @@ class Matrix:
         cells = self.column(column) if column else self.cells
         return Counter(cell.state for cell in cells if cell.evidence == evidence)
 
+    def of_friction(self) -> int:
+        """Return the number of agreements on independent evidence that half the friction force would spoil."""
+        agreeing = (cell for cell in self.cells if cell.state is State.AGREES)
+        return sum(cell.evidence == "independent" and cell.claims[0].friction for cell in agreeing)
+
     def row_of(self, sentence: str) -> Row | None:
         """Return the row of a claim, or None."""
         return next((row for row in self.rows if row.sentence == sentence), None)

@@ -100,12 +100,16 @@ def environment() -> Environment:
 
 
 def summary(matrix: Matrix) -> str:
-    """Return the headline: "41 checks against independent evidence and 7 others agree, 1 differs, 0 inconclusive"."""
-    count = matrix.of_evidence("independent")[State.AGREES]
+    """Return the headline: "41 checks against independent evidence and 7 others agree, 1 differs, 0 inconclusive".
+
+    It also says how many of the former half the friction force would spoil, if these are not all.
+    """
+    count, of_friction = matrix.of_evidence("independent")[State.AGREES], matrix.of_friction()
     more = matrix.totals[State.AGREES] - count
+    tested = f" ({of_friction} of them test the friction force)" if of_friction < count else ""
     others = f" and {more} other{'s' * (more != 1)}" if more else ""
     return (
-        f"{_number_of('check', count)} against independent evidence{others} {_agree(count + more)}, "
+        f"{_number_of('check', count)} against independent evidence{tested}{others} {_agree(count + more)}, "
         f"{_others_in_words(matrix.totals)}"
     )
 

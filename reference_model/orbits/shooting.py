@@ -65,6 +65,12 @@ SLOW = 0.3
 FARTHEST_PERIOD = 0.5
 """Largest relative change of the period of an orbit near the guess."""
 
+UNRESOLVED = 1e-6
+"""Largest amplitude of the harmonics beyond a third of the number of samples, relative to the largest amplitude.
+
+The harmonic whose number is that of the samples, which the trapezoidal rule takes for a mean, is smaller.
+"""
+
 COLLAPSED = 1e-6
 """Smallest size relative to the guess, below which the pin has collapsed onto the axis."""
 
@@ -176,8 +182,21 @@ class Orbit:
 
     @property
     def mean(self) -> FloatArray:
-        """Time mean of x and y in m, shape (2,); the trapezoidal rule is exact to rounding over a period."""
-        return np.asarray(self.trajectory.states[:-1, :2].mean(axis=0))
+        """Time mean of x and y in m, shape (2,), by the trapezoidal rule over the samples of a period.
+
+        The error is below a millionth of the orbit's size, and at most rounding for a smooth orbit with many samples.
+        Raises ``ValueError`` if there are too few samples, or if the orbit recurs only after a rotation.
+        """
+        if self.turn != 0.0:
+            raise ValueError(
+                f"turn = {self.turn:g} rad: the mean needs an orbit that recurs without rotation"
+            )
+        x, y = self.trajectory.states[:-1, :2].T
+        size = np.abs(np.fft.fft(x + 1j * y))
+        high = np.abs(np.fft.fftfreq(len(x))) >= 1.0 / 3.0
+        if len(x) < 3 or np.max(size[high]) > UNRESOLVED * np.max(size):
+            raise ValueError(f"samples = {len(x)}: too few for the mean of this orbit; increase samples")
+        return np.array([x.mean(), y.mean()])
 
     def from_the_right(self) -> Orbit:
         """Return the same orbit, started at the sample with the largest x.

@@ -31,7 +31,7 @@ from reference_model.orbits.shooting import (
     without_angle,
 )
 from reference_model.steady.steady_states import Whirl, whirls, why_no_whirl
-from reference_model.systems import FloatArray, System, finite_number
+from reference_model.systems import FloatArray, System, finite_number, require_whole
 from reference_model.trajectory import Trajectory
 
 RECURRENCE = 0.05
@@ -74,7 +74,7 @@ def whirl_orbit(
     at_crossing
         Fixed value of x at y = 0, in m, with the load μN as an unknown, so a branch can turn at folds.
     tolerance, samples
-        That of ``simulate``, and number of intervals of the trajectory.
+        That of ``simulate``, and number of intervals of the trajectory, at least 1; ``Orbit.mean`` needs more.
     precision
         Relative noise of the engine's states, such as 1e-6 in single precision.
 
@@ -117,6 +117,7 @@ def modulated_cycle(
     ``RuntimeError`` without convergence, or if the radius turns out to be constant.
     """
     require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)
+    require_whole("samples", samples, least=2)  # one interval has equal radii at both ends
     if system.offset != 0.0:
         raise ValueError(
             f"offset = {system.offset:g} m: a modulated cycle repeats up to a rotation about the axis, which "

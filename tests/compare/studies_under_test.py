@@ -103,10 +103,10 @@ If an engine may hold a body at rest, ε is small enough to limit creep.
 """
 
 GROSS = {
+    "half the friction": altered(friction_force=0.5),
     "friction along the slip": made(friction=-1.0, **COARSE),
     "a box for the cone": made(sides=4, **FINER),
     "half the damping": altered(damping=0.5),
-    "half the friction": altered(friction_force=0.5),
 }
 
 SMALL = {
@@ -168,6 +168,7 @@ class Tested:
         assert printed.getvalue() == ""  # output would corrupt the progress bar
         return findings
 
+    @functools.cache  # noqa: B019, as above
     def claims_of_fault(self, fault, only):
         few = self.few if self.few_of_faults is None else self.few_of_faults
         if isinstance(fault, Engine):

@@ -91,6 +91,7 @@ STUDY = Study.beside(
 @STUDY.claim(
     "An isolated drivetrain keeps its angular momentum on all kinds of nodes: {} solver",
     kind="conservation",
+    friction=False,
     note=f"Largest drift in {UNTIL:g} s, divided by the largest angular momentum of one body, for {len(DRIVETRAINS)} "
     f"drivetrains in which each kind of node of each body meets each of the others: {', '.join(KINDS)}. About all "
     "three axes if every body is spatial, otherwise about z.",

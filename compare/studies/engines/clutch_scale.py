@@ -217,6 +217,7 @@ def whirls(engine: Engine) -> Measured:
     equation="(19), (20)",
     resolution=1e-6,
     note=f"A disc that starts in this state, after {CLUTCH.time * REST_OF_DISC:g} s. Rounding of the start: 1e-9.",
+    basis="reference",
 )
 def spins(engine: Engine) -> Measured:
     rest = self_centred_equilibria(FIG8)[0]

@@ -11,12 +11,19 @@ from compare.claims import ROUNDING, WORKING, ByEngine, Data, Figures, Measured,
 from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
 from compare.engines import DeclaredLackError, Engine
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
-from reference_model import PowerBalance, Trajectory, power_balance, sticking_radius
+from reference_model import PowerBalance, Trajectory, power_balance, simulate, sticking_radius
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
 
-SAMPLE_DISTANCE = 0.02
-"""Interval in s; the quadrature then has an error below 1e-9 through stick phases."""
+SAMPLE_DISTANCE, FINE = 0.02, 0.2 * 0.02
+"""Intervals in s; the fine one is for discs, whose friction has a kink where a point of the contact rests."""
+
+CLOSER, NUMBER, ROUGH = 0.8, 40, 1e-7
+"""More samples near the bounds of phases, where integrands are not smooth.
+
+Their distances from a bound are those of a geometric series with this ratio and number of terms, from the sampling
+interval on. The bounds are those of the reference at the tolerance ``ROUGH``, because other engines' differ by less.
+"""
 
 RESOLUTION = 1e-8
 """Relative to the energy turned over."""
@@ -96,16 +103,21 @@ def motions_of_the_disc() -> dict[str, Motion]:
     on_table = "only friction, on a disc at rest, μN = 0.1 N, J = mR², arbitrary start"
     return {
         "a disc on its way to the modulated cycle": Motion(
-            FIG11, near_axis, 100.0, "Fig. 11 with X0 = 0, arbitrary start"
+            FIG11, near_axis, 100.0, "Fig. 11 with X0 = 0, arbitrary start", step=FINE
         ),
         "a disc on six points": Motion(
-            replace(FIG11, contact_points=6), near_axis, 40.0, "Fig. 11 with X0 = 0, arbitrary start"
+            replace(FIG11, contact_points=6),
+            near_axis,
+            40.0,
+            "Fig. 11 with X0 = 0, arbitrary start",
+            step=FINE,
         ),
         "a disc with an offset, turning the other way": Motion(
             replace(FIG11, disc_speed=-FIG11.disc_speed, shaft_speed=-FIG11.shaft_speed, offset=0.02),
             (0.02, 0.0, 0.0, 0.0, 0.0, -1.3),
             40.0,
             "Fig. 11 with −ω, −Ω and X0 = 0.02 m, arbitrary start",
+            step=FINE,
         ),
         "a disc that sticks all the time": Motion(
             sticky,
@@ -120,7 +132,7 @@ def motions_of_the_disc() -> dict[str, Motion]:
             thrown,
             10.0,
             on_table,
-            step=0.1 * SAMPLE_DISTANCE,
+            step=0.25 * FINE,
             contact_alone=True,
         ),
     }
@@ -182,11 +194,19 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
 
 
 def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    intervals = 2 * round(
-        motion.until / (2.0 * motion.step)
-    )  # even, so every second sample includes the last one
-    times = np.linspace(0.0, motion.until, intervals + 1)
-    return engine.simulate(motion.system, motion.start, times, tolerance=tolerance)
+    return engine.simulate(motion.system, motion.start, _times(motion), tolerance=tolerance)
+
+
+@functools.cache
+def _times(motion: Motion) -> FloatArray:
+    """Return an odd number of times (s), so every second sample includes the last one."""
+    evenly = np.linspace(0.0, motion.until, 2 * round(motion.until / (2.0 * motion.step)) + 1)
+    rough = simulate(motion.system, motion.start, evenly[[0, -1]], tolerance=ROUGH)
+    near = motion.step * CLOSER ** np.arange(NUMBER)
+    bounds = np.array([phase.start for phase in rough.phases[1:]])
+    closer = np.ravel(bounds[:, np.newaxis] + [*near, *-near])
+    times = np.union1d(evenly, closer[(closer > 0.0) & (closer < motion.until)])
+    return times if len(times) % 2 else np.delete(times, 1)
 
 
 def _every_second(trajectory: Trajectory) -> Trajectory:

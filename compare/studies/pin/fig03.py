@@ -146,6 +146,7 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> Measurement:
     resolution=1e-9 * PIN.offset**2,
     note="Left side minus right side of (4), at the positions of the previous claim.",
     implied_by=rests,
+    friction=False,
     swept=("friction_force",),
 )
 def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
@@ -231,6 +232,7 @@ def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     DECAYS,
     equation="(5)",
     note="Is the real part of each measured eigenvalue below zero?",
+    friction=False,
     implied_by=eigenvalues,
     swept=("friction_force",),
 )

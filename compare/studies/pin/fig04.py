@@ -67,6 +67,7 @@ AT_SPEEDS = {f"{speed:g}": speed for speed in CLAIM_SPEEDS}
     note="The model error uses neither a simulation nor (18) itself. It is the limit of the relative error of (18) "
     "for X0 → 0, plus the third order in X0 with the geometric series of higher orders.",
     each=AT_SPEEDS,
+    friction=False,
 )
 def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Measured:
     pin = pin_at(speed)
@@ -92,6 +93,7 @@ def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Mea
     note="All values are divided by X0 and extrapolated in X0². Model error: the change from the extrapolation by "
     "the two larger offsets.",
     each=AT_SPEEDS,
+    friction=False,
     duration=800.0,
 )
 def response(engine: Engine, speed: float) -> Measured:
@@ -116,6 +118,7 @@ def response(engine: Engine, speed: float) -> Measured:
     kind="order",
     resolution=0.05,
     each=AT_SPEEDS,
+    friction=False,
     duration=800.0,
 )
 def order(engine: Engine, speed: float) -> Measured:
@@ -146,6 +149,7 @@ def order(engine: Engine, speed: float) -> Measured:
     "extrapolation by the two larger offsets.",
     implied_by=order,
     each=AT_SPEEDS,
+    friction=False,
     duration=800.0,
 )
 def limit(engine: Engine, speed: float) -> Measured:

@@ -51,7 +51,7 @@ def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
     sticking = np.linspace(LIMIT, WHIRL_LOADS[-1], 101)[1:]
     return {
         "branch load": np.array([orbit.system.friction_force for orbit in branch]),
-        "branch extent": np.array([extent(orbit) for orbit in branch]),
+        "branch extent": np.array([extent(orbit).value for orbit in branch]),
         "branch sticks": np.array([float(len(orbit.trajectory.stick_phases) > 0) for orbit in branch]),
         "equilibrium load": loads,
         "equilibrium radius": np.array([formulas.equilibrium_radius(with_load(load)) for load in loads]),
@@ -127,13 +127,15 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     miss = max(orbit.residual for orbit in (*first, *others))
     # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − slowest multiplier).
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
+    extents, exact = ([extent(orbit) for orbit in orbits] for orbits in (first, others))
+    read = max(one.largest for one in (*extents, *exact))
     return compared(
         [sizes_of(orbit) for orbit in others],
         found,
-        error=found.largest + miss * sharpness,
+        error=found.largest + miss * sharpness + 2.0 * read,
         at={"μN in N": loads},
         components=SIZES,
-        data=lambda: {"whirl loads": loads, "whirl extents": [extent(orbit) for orbit in first]},
+        data=lambda: {"whirl loads": loads, "whirl extents": [one.value for one in extents]},
     )
 
 

@@ -14,7 +14,7 @@ from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine, reference
 from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.measuring import compared, followed
-from compare.studies.toolkit.pins import BESIDE, SIZES, exact_whirl, resting, sizes_of, whirl_of
+from compare.studies.toolkit.pins import BESIDE, SIZES, exact_whirl, extent, resting, sizes_of, whirl_of
 from compare.studies.toolkit.steady_motion import CONVERGED, sharpness, steady_motion
 from reference_model import Orbit, simulate, whirls
 from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
@@ -158,7 +158,7 @@ def orbit(engine: Engine) -> Measured:
     return compared(
         [sizes_of(one) for one in exact],
         found,
-        error=found.largest + max(one.residual for one in exact),
+        error=found.largest + max(one.residual + 2.0 * extent(one).largest for one in exact),
         at=SUPPORTS,
         components=SIZES,
         parameters={"offset": FIG4.offset},

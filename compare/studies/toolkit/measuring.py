@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from compare.claims import Measured, Measurement, refined
@@ -39,3 +40,40 @@ def residual_of_4(
         error=slope * error + np.square(error),
         at=at,
     )
+
+
+REACH = 4
+"""Samples on either side of an extreme in the polynomial that finds it."""
+
+
+def extremes(values: ArrayLike, *, periodic: bool = False) -> Measurement:
+    """Return the smallest and the largest value of a curve between its equidistant samples, and their errors, (2,).
+
+    The curve near an extreme is the polynomial through ``REACH`` samples on either side. The error is the change with
+    half as many. The first sample of a ``periodic`` curve is also its last one.
+    """
+    values = np.asarray(values, dtype=float)
+    if periodic:
+        values = np.concatenate((values[-2 - REACH : -1], values, values[1 : 2 + REACH]))
+    fine, rough = (
+        np.array([-_summit(-values, reach), _summit(values, reach)]) for reach in (REACH, REACH // 2)
+    )
+    return Measurement(fine, np.abs(fine - rough))
+
+
+def _summit(values: FloatArray, reach: int) -> float:
+    """Return the largest value of the polynomials through 2·``reach`` + 1 samples about each maximum."""
+    most, rise = np.max(values), np.max(np.abs(np.diff(values, 2)))
+    inside = (values >= np.roll(values, 1)) & (values >= np.roll(values, -1))
+    inside[[0, -1]] = True
+    found = [float(most)]
+    # Between samples, a curve rises by about an eighth of its second difference.
+    for i in np.flatnonzero(inside & (values >= most - 0.5 * rise)).tolist():
+        first = min(max(i - reach, 0), len(values) - 2 * reach - 1)
+        places = first - i + np.arange(2 * reach + 1)
+        curve = Polynomial.fit(places, values[first : first + len(places)], 2 * reach)
+        turning = curve.deriv().roots()
+        turning = turning.real[turning.imag == 0.0]
+        low, high = max(-1, -i), min(1, len(values) - 1 - i)
+        found += curve(turning[(low <= turning) & (turning <= high)]).tolist()
+    return max(found)

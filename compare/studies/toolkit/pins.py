@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims import TRUTH, Measured
+from compare.claims import TRUTH, Measured, Measurement
 from compare.engines import Engine, reference
-from compare.studies.toolkit.measuring import compared, followed
+from compare.studies.toolkit.measuring import compared, extremes, followed
 from reference_model import Orbit, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position
 from reference_model.systems import FloatArray, PinOnDisc, System
@@ -41,7 +41,7 @@ def first_release(run: Trajectory) -> float:
     return first.end if len(run.phases) > 1 else math.inf
 
 
-SAMPLES = 64
+SAMPLES = 128
 """States per revolution."""
 
 
@@ -59,10 +59,9 @@ def exact_whirl(pin: PinOnDisc) -> Orbit:
     return whirl_of(reference, pin, 3.0 * TRUTH)
 
 
-def extent(orbit: Orbit) -> FloatArray:
-    """Return the smallest and largest distance from the axis (m)."""
-    radius = orbit.trajectory.radius
-    return np.array([np.min(radius), np.max(radius)])
+def extent(orbit: Orbit) -> Measurement:
+    """Return the smallest and largest distance from the axis, and the errors of reading them from samples (m)."""
+    return extremes(orbit.trajectory.radius, periodic=True)
 
 
 SIZES = ("period in s", "smallest radius in m", "largest radius in m")
@@ -70,7 +69,7 @@ SIZES = ("period in s", "smallest radius in m", "largest radius in m")
 
 def sizes_of(orbit: Orbit) -> list[float]:
     """Return the numbers named in ``SIZES``."""
-    return [orbit.period, *extent(orbit)]
+    return [orbit.period, *extent(orbit).value]
 
 
 BESIDE = 0.005

@@ -173,6 +173,27 @@ def test_the_page_counts_independent_evidence_first_and_explains_each_kind(repor
     assert page.count("Exudyn with its built-in contact in place of the connector") == 1
 
 
+def test_the_headline_counts_the_evidence_that_half_the_friction_would_spoil(tmp_path):
+    def with_kinematics(engine):
+        claims = measured(engine).claims
+        return Findings((*claims[:2], replace(claims[2], friction=False)))
+
+    found = write_report(run((study_of(with_kinematics),), (GOOD,), folder=tmp_path / "data"), tmp_path)
+    line = "2 checks against independent evidence (1 of them test the friction force) and 1 other agree"
+    assert summary(found) == f"{line}, 0 differ, 0 inconclusive"
+    results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert [one["friction"] for one in results["studies"][0]["claims"]] == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("name", "function", "basis"),
+    [("clutch-scale", "spins", "reference"), ("clutch-parts", "balance", "self-check")],
+)
+def test_a_prediction_from_the_friction_law_under_test_is_not_independent(name, function, basis):
+    (study,) = studies([name])
+    assert [one.basis for one in study.declared if one.function.__name__ == function] == [basis]
+
+
 def test_machine_readable_results_contain_the_kind_of_evidence(reported):
     _, folder = reported
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))

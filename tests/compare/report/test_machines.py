@@ -77,7 +77,7 @@ def test_a_table_contains_unit_and_place_of_each_number(tmp_path, monkeypatch, l
 
 
 SENTENCE = "Theory predicts with an error of 5.0 ± 0.5 degrees."
-FITS = Validation(SENTENCE, "heading", "degrees", 5.0, 0.5, 2.0, 0.1, 0.01, 0.5, 40)
+FITS = Validation(SENTENCE, "heading", "degrees", 5.0, 0.5, 2.0, 0.1, 0.01, 0.5, 1.5, 2.5, 40)
 
 
 def one_validation():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from studies_under_test import AGREES, DIFFERS, INCONCLUSIVE, verdicts
+from studies_under_test import AGREES, DIFFERS, GROSS, INCONCLUSIVE, verdicts
 from tested_studies import TESTED
 
 from compare.studies import STUDIES
@@ -71,6 +71,20 @@ def too_coarse_for_a_per_cent(claim):
     An order deviates by an absolute amount, not by a percentage.
     """
     return claim.kind == "order" or (claim.relative_error > 0.01 and bool(np.any(claim.predicted)))
+
+
+def test_each_claim_says_whether_half_the_friction_spoils_it(tested):
+    """The headline of a report counts the agreements that say so."""
+    if not {"reference", "as reported"} & set(tested.sound):
+        pytest.skip("tests of the study change the friction of its model")
+    wrong = {}
+    for part in tested.study.sentences().values():
+        try:
+            claims = tested.claims_of_fault(GROSS["half the friction"], (part,))
+        except RuntimeError:  # no such motion with so little friction
+            continue
+        wrong |= {one.identity: one.friction for one in claims if (one.verdict is AGREES) == one.friction}
+    assert wrong == {}
 
 
 def test_each_claim_fails_for_a_gross_fault(tested):

@@ -12,6 +12,7 @@ from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, last_whirl, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import ThreeTermRing
 from reference_model.orbits import modulated_cycle, whirl_branch
+from reference_model.orbits.release_map import stick_slip_orbits
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
@@ -259,3 +260,26 @@ def test_failed_shooting_reports_the_parameters_where_it_stopped_and_the_next_gu
     )
     with pytest.raises(RuntimeError, match=reported):
         whirl_orbit(replace(FIG_6, friction_force=0.078), tolerance=1e-9)
+
+
+def test_a_mean_has_an_error_below_a_millionth_or_is_refused_with_too_few_samples():
+    """The mean of one sample is the initial position, 0.88 m away."""
+    exact = whirl_orbit(FIG_5, samples=1024).mean
+    for samples in (1, 2, 5, 8, 12):
+        with pytest.raises(ValueError, match=f"samples = {samples}: too few for the mean of this orbit"):
+            _ = whirl_orbit(FIG_5, samples=samples).mean
+    for samples in (16, 21, 64):
+        assert whirl_orbit(FIG_5, samples=samples).mean == pytest.approx(exact, abs=1e-8)
+    coarse, *fine = (stick_slip_orbits(FIG_5, samples=samples)[0] for samples in (16, 256, 2048))
+    assert fine[0].mean == pytest.approx(fine[1].mean, abs=1e-8)
+    with pytest.raises(ValueError, match="samples = 16: too few"):
+        _ = coarse.mean
+
+
+def test_an_orbit_that_recurs_after_a_rotation_has_no_mean_and_needs_two_samples(fold):
+    with pytest.raises(
+        ValueError, match="turn = 2 rad: the mean needs an orbit that recurs without rotation"
+    ):
+        _ = replace(fold, turn=2.0).mean
+    with pytest.raises(ValueError, match="samples = 1: it must be a whole number >= 2"):
+        modulated_cycle(replace(FIG_6, offset=0.0), fold, samples=1)

@@ -146,6 +146,7 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     resolution=1e-9 * RING.offset**2,
     note="Left side minus right side of (4), at the positions of the previous claim.",
     implied_by=rests,
+    friction=False,
     swept=("friction_force",),
 )
 def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:

@@ -13,8 +13,8 @@ import compare.studies.disc.fig09.theory as theory
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09.theory import STUDY
-from compare.studies.toolkit.measuring import compared
-from compare.studies.toolkit.pins import SIZES, sizes_of, whirl_of
+from compare.studies.toolkit.measuring import compared, extremes
+from compare.studies.toolkit.pins import SIZES, extent, sizes_of, whirl_of
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
 from reference_model import Orbit
 from reference_model.steady.steady_states import whirls
@@ -194,9 +194,10 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) 
     distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
     found = with_tolerance(found, predicted[:, 2] / np.array(distances)[:, 1])
     loads = [load for load, _ in whirls]
+    read = max(max(extent(orbit).largest, spins_of(orbit).largest) for orbit in exact)
     return compared(
         predicted,
-        found,
+        found.plus(2.0 * read),
         at={"μN in N": loads},
         components=(*SIZES, "smallest spin in rad/s", "largest spin in rad/s", "mean spin in rad/s"),
         data={"orbit load": loads, "orbit": found.value},
@@ -212,8 +213,12 @@ def orbit_of(
 
 def sizes_and_spins(orbit: Orbit) -> FloatArray:
     """Return the numbers of ``SIZES``, and the smallest, largest and mean spin (rad/s)."""
-    spin = orbit.trajectory.states[:-1, -1]
-    return np.array([*sizes_of(orbit), np.min(spin), np.max(spin), np.mean(spin)])
+    return np.array([*sizes_of(orbit), *spins_of(orbit).value, np.mean(orbit.trajectory.states[:-1, -1])])
+
+
+def spins_of(orbit: Orbit) -> Measurement:
+    """Return the smallest and largest spin, and the errors of reading them from samples (rad/s)."""
+    return extremes(orbit.trajectory.states[:, -1], periodic=True)
 
 
 @functools.lru_cache(maxsize=4)

@@ -11,11 +11,12 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from compare.claims import TRUTH, Study
+from compare.claims import TRUTH, Measurement, Study
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import FIG8, FIG11
 from compare.engines import Engine, reference
 from compare.studies.toolkit.fig11 import DISCS, RING, SOURCE, START, integrated, rates
+from compare.studies.toolkit.measuring import extremes
 from compare.studies.toolkit.pins import whirl_of
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
@@ -178,14 +179,10 @@ def predicted_modulation() -> tuple[FloatArray, FloatArray]:
     return fine[0], np.abs(rough[0] - fine[0]) + fine[1]
 
 
-def extremes_of(trajectory: Trajectory) -> FloatArray:
-    """Return smallest and largest radius (m) and spin (rad/s) of a spline, shape (4,)."""
-    found = []
-    for values in (trajectory.radius, trajectory.states[:, 5]):
-        curve = CubicSpline(trajectory.times, values)
-        all_values = [*curve(curve.derivative().roots(extrapolate=False)), *values[[0, -1]]]
-        found += [min(all_values), max(all_values)]
-    return np.array(found)
+def extremes_of(trajectory: Trajectory) -> Measurement:
+    """Return smallest and largest radius (m) and spin (rad/s), and the errors of reading them, shape (4,) each."""
+    both = [extremes(values) for values in (trajectory.radius, trajectory.states[:, 5])]
+    return Measurement(*np.swapaxes(both, 0, 1).reshape(2, 4))
 
 
 # --- Whirl and equilibrium against the offset

@@ -199,6 +199,7 @@ def _limit(last: float, middle: float, first: float) -> float:
     note=f"Power of W/U ~ t^(mR²/2J − 1) or U/W ~ t^(J/2mR² − 1), fitted to the last {theory.ENDING[-1]:g} to "
     f"{theory.ENDING[0]:g} of the time to rest, with the next term, whose size is the model error.",
     swept=("polar_inertia",),
+    friction=False,
 )
 def powers(engine: Engine, throws: Throws = theory.LOPSIDED) -> Measured:
     predicted, found = [], []

@@ -137,6 +137,7 @@ def _nearest(times: FloatArray, time: float) -> float:
 @STUDY.claim(
     "Four rotors gain the angular momentum that the torque on the first rotor supplies",
     kind="conservation",
+    friction=False,
     unit="kg m²/s",
     resolution=1e-8,
     note="At the end. Numerical error: eight times the difference between the runs of the first claim; rounding, "

@@ -44,6 +44,7 @@ def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measur
         note=f"{len(found.errors)} numbers from {found.motions} motions; standard error of the coverage: "
         f"{100.0 * found.coverage_noise:.2f} %.",
         data={f"{kind}: errors": found.errors, f"{kind}: estimates": found.estimates},
+        friction=kind not in theory.FRICTIONLESS,
     )
 
 
@@ -51,6 +52,7 @@ def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measur
     f"The median ratio of estimate to true error is at most {theory.MOST_OVER_ESTIMATE:g}: {{}}",
     kind="trajectory",
     resolution=theory.MOST_OVER_ESTIMATE - PROPORTIONAL,
+    friction=False,
     note=f"{KNOWN_FROM} If errors are proportional to the tolerance, the ratio is {SAFETY:g}·(1 − 1/{COARSENING:g}) "
     f"= {PROPORTIONAL:g} by construction. If errors do not depend on the tolerance, as in the closed form of stick, "
     f"it is the allowed rounding over the known rounding, {ROUNDING / theory.KNOWN:g}.",

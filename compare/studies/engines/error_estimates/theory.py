@@ -48,6 +48,9 @@ SOURCE = (
     "are random"
 )
 
+FRICTIONLESS = ("damped oscillation", "lag of the shaft")
+"""Kinds of problem without friction."""
+
 KNOWN = 4.0 * np.finfo(float).eps
 """Rounding error of an exact motion, relative to its largest number; a smaller error occurs only by chance."""
 

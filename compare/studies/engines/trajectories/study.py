@@ -182,6 +182,7 @@ def moves(engine: Engine, motion: Motion) -> Measured:
     of_discs="m, rad",
     pins=SLIDING,
     by_law=False,
+    friction=False,
     note=INTEGRATED,
 )
 @together

@@ -223,6 +223,7 @@ def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
     unit="rad/s",
     resolution=1e-9 * K,
     note=SETTLING,
+    friction=False,
     swept=("disc_speed",),
     duration=1.3e4,
 )
@@ -341,6 +342,7 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) 
     "The whirl is stable if ω > k",
     equation="(16)",
     note="Is the real part of each measured eigenvalue below zero, except for the one that belongs to the phase?",
+    friction=False,
     implied_by=eigenvalues,
     swept=("disc_speed", "damping"),
     duration=2.7e3,

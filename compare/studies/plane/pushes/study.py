@@ -9,7 +9,7 @@ import compare.studies.plane.pushes.forward as forward
 import compare.studies.plane.pushes.theory as theory
 from compare.claims import Measured, Study
 from compare.claims.prose import Table
-from compare.claims.validation import Validation
+from compare.claims.validation import EXPECTED, Validation
 from compare.engines import Engine
 from compare.studies.plane.pushes.reduction import Push
 from reference_model.contact.limit_surface import largest_wrench
@@ -202,8 +202,12 @@ def _validation(
         found = float(np.median(values))
         return found if found > ROUNDING else 0.0
 
+    explained, (factor, model) = uncertain.share_explained(sizes), uncertain.missing(sizes)
     return Validation(
-        sentence=sentence.format(f"{median:.1f} ± {scatter:.1f}"),
+        sentence=f"{sentence.format(f'{median:.1f} ± {scatter:.1f}')} {_against_expected(explained)}: "
+        f"{100.0 * explained:.0f} % of the errors are at most twice their uncertainty, {100.0 * EXPECTED:g} % are "
+        f"expected. The uncertainty would have to be {factor:.1f} times as large, or the theory would need an error "
+        f"with a standard deviation of {model:.1f} {unit}.",
         quantity=quantity,
         unit=unit,
         error=median,
@@ -211,9 +215,15 @@ def _validation(
         data=middle(uncertain.data),
         input=middle(uncertain.input),
         numerical=middle(uncertain.numerical),
-        explained=uncertain.share_explained(sizes),
+        explained=explained,
+        factor=factor,
+        model=model,
         count=len(sizes),
     )
+
+
+def _against_expected(explained: float) -> str:
+    return "This agrees" if explained >= EXPECTED else "This does not agree within the known uncertainties"
 
 
 def tables() -> tuple[Table, ...]:

@@ -14,6 +14,7 @@ from itertools import combinations, groupby
 import numpy as np
 from numpy.typing import NDArray
 
+from compare.claims.validation import EXPECTED
 from compare.studies.plane.pushes.reduction import Push, reduced_pushes
 from reference_model.contact.limit_surface import wrench_of_slip
 from reference_model.contact.patch import polygon_patch
@@ -178,8 +179,18 @@ class Uncertainties:
 
     def share_explained(self, errors: FloatArray) -> float:
         """Return the share of ``errors`` (n,) that are at most twice their total uncertainty."""
-        total = np.sqrt(self.data**2 + self.input**2 + self.numerical**2)
-        return float(np.mean(errors <= 2.0 * total))
+        return float(np.mean(errors <= 2.0 * self.total))
+
+    @property
+    def total(self) -> FloatArray:
+        """Total standard uncertainty of each difference."""
+        return np.asarray(np.sqrt(self.data**2 + self.input**2 + self.numerical**2))
+
+    def missing(self, errors: FloatArray) -> tuple[float, float]:
+        """Return the factor on the total, and the additional uncertainty, that explain the expected share."""
+        factor = np.quantile(0.5 * errors / self.total, EXPECTED, method="inverted_cdf")
+        squared = np.quantile((0.5 * errors) ** 2 - self.total**2, EXPECTED, method="inverted_cdf")
+        return float(factor), float(np.sqrt(max(squared, 0.0)))
 
 
 def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from processes import ROOT
+from scipy.integrate import solve_ivp
 
 import compare.foreign
 from compare.claims.claim import Verdict
@@ -27,6 +28,7 @@ from compare.studies.engines.foreign_engines.theory import (
     recorded_settings,
     time_to,
 )
+from reference_model import plain
 
 OURS = {"reference", "exudyn", "exudyn-native"}
 NAMES = {case.sentence: name for name, case in CASES.items()}
@@ -218,6 +220,29 @@ def test_errors_due_to_another_law_are_extrapolated_to_a_step_of_zero():
     """Three halves of the last recorded digit remain; the smallest step alone would add 6e-5 m."""
     found = foreign_engines._as_far_off_as(theory.pyramid, "whirl", theory.PYRAMIDS)
     assert np.abs(found.value - found.predicted).max() < 1.5e-5
+
+
+@pytest.mark.parametrize(
+    ("law", "wanted", "off"), [(theory.box, theory.BOXES, 0.2403), (theory.pyramid, theory.PYRAMIDS, 0.0937)]
+)
+def test_a_whirl_under_another_law_is_read_after_it_has_settled(law, wanted, off):
+    """Over a whole revolution after 300 s, by another integrator; the recorded window gives 0.2374 and 0.0925 m."""
+    pin = CASES["whirl"].system
+
+    def friction(slip_x, slip_y, *_):
+        force = pin.friction_force * law(complex(slip_x, slip_y), 1e-3)
+        return force.real, force.imag, 0.0
+
+    times = 300.0 + np.linspace(0.0, 2.0 * np.pi, 201)
+    run = solve_ivp(
+        lambda _, state: plain.rates(pin, friction, state), (0.0, times[-1]), CASES["whirl"].start,
+        method="RK45", rtol=1e-6, atol=1e-8, max_step=0.02, t_eval=times,
+    )  # fmt: skip
+    expected = abs(np.mean(np.hypot(*run.y[:2, :-1])) - abs(CASES["whirl"].exact()[0]))
+    found = foreign_engines._as_far_off_as(law, "whirl", wanted)
+    assert expected == pytest.approx(off, abs=3e-4)
+    assert np.asarray(found.predicted) == pytest.approx(off, abs=1e-4)
+    assert np.asarray(found.value) == pytest.approx(off, abs=2e-4)
 
 
 # ---------------------------------------------------------------- files, figures, page

@@ -16,4 +16,4 @@ def test_theory_follows_the_branch_through_the_fold_to_orbits_that_stick():
     assert found["branch sticks"][-1] == 1.0
     assert np.all(found["branch extent"][:, 0] < found["branch extent"][:, 1])
     outermost = whirl_orbit(study.with_load(study.WHIRL_LOADS[-1]))
-    assert found["branch extent"][0] == pytest.approx(extent(outermost), abs=1e-4)
+    assert found["branch extent"][0] == pytest.approx(extent(outermost).value, abs=1e-4)

@@ -3,15 +3,19 @@
 import math
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.stats import norm
 from studies_under_test import DIFFERS, theory_of
 
-from compare.studies.plane.pushes import forward, pictures, theory
+from compare.claims.validation import EXPECTED
+from compare.studies.plane.pushes import forward, pictures, study, theory
 from compare.studies.plane.pushes.reduction import reduced_pushes
 from compare.studies.plane.pushes.study import GROUPS, STUDY, chosen, validations
+
+TEXT = " ".join(Path(study.__file__).with_name("study.md").read_text(encoding="utf-8").split())
 
 SERIES = "10_90_10_10_30_130"
 
@@ -71,7 +75,53 @@ def test_each_push_is_validated_once():
     for one in (*directions, wrench, work, position):
         assert 0.0 < one.error_uncertainty < one.error
         assert f"{one.error:.1f} ± {one.error_uncertainty:.1f}" in one.sentence
-        assert 0.0 < one.explained < 1.0
+        assert f"{100.0 * one.explained:.0f} % of the errors" in one.sentence
+        # A study that validates the law would need another text.
+        assert 0.0 < one.explained < EXPECTED
+        assert "does not agree" in one.sentence
+        assert f"{one.factor:.1f} times" in one.sentence
+        assert f"{one.model:.1f} {one.unit}" in one.sentence
+    assert "this does not validate Coulomb's law" in TEXT
+
+
+def test_larger_uncertainties_or_an_error_of_the_theory_explain_the_expected_share():
+    random = np.random.default_rng(2)
+    errors = np.abs(random.normal(0.0, 3.0, 999))
+    known = theory.Uncertainties(np.full(999, 0.8), np.full(999, 0.6), np.zeros(999))
+    factor, model = known.missing(errors)
+    assert (factor, model) == pytest.approx((3.0 * norm.ppf(0.975) / 2.0, math.sqrt(8.0)), rel=0.05)
+    for scale in (0.999, 1.001):
+        larger = [
+            theory.Uncertainties(scale * factor * known.data, scale * factor * known.input, known.numerical),
+            theory.Uncertainties(known.data, known.input, np.full(999, scale * model)),
+        ]
+        assert {one.share_explained(errors) >= EXPECTED for one in larger} == {scale > 1.0}
+    assert theory.Uncertainties(errors, errors, errors).missing(errors)[1] == 0.0
+
+
+def test_the_text_contains_the_numbers_of_the_measurements():
+    series = theory.by_series()
+    lifts, turns = np.transpose([theory.pose_errors(pushes) for pushes in series.values()])
+    assert f"by {lifts.min():.1f} to {lifts.max():.1f} mm and {1e3 * turns.min():.0f} to " in TEXT
+    assert f"{1e3 * turns.max():.0f} mrad" in TEXT
+    above = partial(theory.pushed_above, height=10.0)
+    angle, before = (
+        np.median(theory.errors(series["patch"], theory.force_error, *law)) for law in ([above], [])
+    )
+    assert f"a median error of {angle:.1f} degrees, a third less" in TEXT
+    assert angle == pytest.approx(2.0 / 3.0 * before, rel=0.05)
+    ratios, scatters, larger = [], [], {}
+    for name, pushes in series.items():
+        work = np.array([theory.work_error(push, theory.coulomb) for push in pushes])
+        ratios.append(np.median(np.abs(work) / theory.uncertainties(pushes, theory.work_error).total))
+        scatters.append(theory.scatter(pushes, theory.work_error)[0])
+        larger[name] = np.mean(work > 0.0)
+        raised = np.median(theory.errors(pushes, theory.work_ratio, above))
+        assert raised == pytest.approx(np.median(theory.errors(pushes, theory.work_ratio)), rel=0.01)
+    assert (round(min(ratios)), round(max(ratios))) == (4, 15)
+    assert "by four to fifteen times its known uncertainty" in TEXT
+    assert f"scatter by {min(scatters):.0f} to {max(scatters):.0f} %" in TEXT
+    assert [name for name, share in larger.items() if share < 0.65] == ["wood_patch"]
 
 
 def test_the_work_is_as_uncertain_as_the_last_digit_of_the_sliding_force(monkeypatch):

@@ -1,0 +1,258 @@
+"""Predictions that share code with their measurement, compared with values found another way.
+
+If both sides of a claim read a number by the same code, its errors cancel. Here other means find the number: SciPy's
+integration of the plain equations with events, the return map of releases, or samples without a polynomial.
+``docs/verdicts.md`` lists these claims.
+"""
+
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from plain_slip import slide
+from processes import ROOT
+from scipy.optimize import brentq, root
+from studies_under_test import engine_named
+
+from compare.claims.error_estimates import TIGHTEST, TRUTH
+from compare.claims.linearised_flow import rotated
+from compare.claims.parameters import FIG5, FIG5_STARTS
+from compare.studies import STUDIES
+from compare.studies.disc.fig08 import study as fig08
+from compare.studies.disc.fig09 import growth_and_stick, steady_motions, theory
+from compare.studies.disc.fig11 import offsets
+from compare.studies.disc.fig11 import theory as fig11
+from compare.studies.engines import clutch_scale, power_balance
+from compare.studies.engines.trajectories import theory as trajectories
+from compare.studies.pin import fig06, nonlinear_support
+from compare.studies.pin.fig05 import study as fig05
+from compare.studies.toolkit import measuring
+from compare.studies.toolkit.fig11 import RING, SIX, START
+from compare.studies.toolkit.pins import exact_whirl, extent, sizes_of
+from compare.studies.toolkit.steady_motion import equilibrium_of, steady_motion, with_load
+from reference_model import plain, simulate
+from reference_model.contact.contact_law import contact_of
+from reference_model.ensemble import EndState, simulate_ensemble
+from reference_model.orbits.release_map import ReleaseMap, stick_slip_orbits
+from reference_model.systems import ANGLE, DiscOnDisc
+
+BY_SCIPY = {"rtol": 1e-13, "atol": 1e-14, "t_eval": None}
+
+
+def outward(_, state):
+    half = len(state) // 2
+    return state[0] * state[half] + state[1] * state[half + 1]
+
+
+def crosses_axis(_, state):
+    return state[1]
+
+
+crosses_axis.direction = 1.0
+
+
+def extremes_in_a_turn(orbit):
+    """Return period and extremes of radius and, for a disc, spin: where their rates vanish in SciPy's solution."""
+    law = plain.by_law(orbit.system.friction_force, contact_of(orbit.system))
+    spins = (lambda _, state: plain.rates(orbit.system, law, state)[-1],)
+    events = (crosses_axis, outward, *(spins if isinstance(orbit.system, DiscOnDisc) else ()))
+    run = slide(orbit.system, orbit.state, (0.0, 1.1 * orbit.period), events=events, **BY_SCIPY)
+    period, end = next(
+        found for found in zip(run.t_events[0], run.y_events[0], strict=True) if found[0] > 0.1
+    )
+    back = end - orbit.state
+    back[ANGLE : len(back) - 3] = 0.0  # the angle of a disc does not recur
+    assert back == pytest.approx(0.0, abs=1e-9)
+    radius = np.hypot(*run.y_events[1][:, :2].T)
+    spin = [function(states[:, -1]) for states in run.y_events[2:] for function in (np.min, np.max)]
+    return [period, radius.min(), radius.max(), *spin]
+
+
+WHIRLS = {f"fig06/whirls, {load:g} N": fig06.with_load(load) for load in fig06.WHIRL_LOADS} | {
+    f"nonlinear-support/orbit, {pin.hardening:g} N/m³": pin for pin in nonlinear_support.SHIFTED
+}
+
+
+def assert_read_within_its_error(read, expected):
+    """Compare with the larger error of both extremes, which claims count, plus the tolerance of SciPy."""
+    assert read.largest < 1e-8
+    assert read.value == pytest.approx(expected, rel=0.0, abs=read.largest + 2e-11)
+
+
+@pytest.mark.parametrize("pin", WHIRLS.values(), ids=WHIRLS)
+def test_period_and_radii_of_whirls_of_pins(pin):
+    orbit = exact_whirl(pin)
+    period, *radii = extremes_in_a_turn(orbit)
+    assert sizes_of(orbit)[0] == pytest.approx(period, rel=1e-12)
+    assert_read_within_its_error(extent(orbit), radii)
+
+
+@pytest.mark.parametrize("whirl", theory.ORBITS)
+def test_period_radii_and_spins_of_whirls_of_discs(whirl):
+    orbit = theory.orbit_of_reference(*whirl)
+    period, *extremes = extremes_in_a_turn(orbit)
+    assert steady_motions.sizes_and_spins(orbit)[0] == pytest.approx(period, rel=1e-12)
+    assert_read_within_its_error(extent(orbit), extremes[:2])
+    assert_read_within_its_error(steady_motions.spins_of(orbit), extremes[2:])
+
+
+def test_the_extremes_of_fig_6_are_those_of_an_audit():
+    """The largest of 64 samples was 1.2e-4 m too small, with an error bar of 2e-8 m."""
+    assert extent(exact_whirl(fig06.with_load(0.09))).value[1] == pytest.approx(0.86903136, abs=5e-9)
+    assert extent(exact_whirl(nonlinear_support.SHIFTED[1])).value[0] == pytest.approx(0.74288972, abs=5e-9)
+    inner = theory.orbit_of_reference(*theory.ORBITS[1])
+    assert extent(inner).value[1] == pytest.approx(0.33051946, abs=5e-9)
+
+
+def test_the_least_load_of_a_whirl_by_a_return_map_of_scipy():
+    fold = fig06.load_of_unit_multiplier()
+    x, y, *velocity = fig06.last_whirl(fig06.with_load(0.08)).state
+    assert y == 0.0
+
+    def load_at(x):
+        def miss(unknowns):
+            start = np.array([x, 0.0, *unknowns[:2]])
+            pin = fig06.with_load(unknowns[2])
+            run = slide(pin, start, (0.0, 9.0), events=crosses_axis, **(BY_SCIPY | {"rtol": 1e-12}))
+            return next(end for t, end in zip(run.t_events[0], run.y_events[0], strict=True) if t > 1.0)[
+                [0, 2, 3]
+            ] - [x, *unknowns[:2]]
+
+        return root(miss, [*velocity, fold], tol=1e-12).x[2]
+
+    away = x * np.array([-3e-3, 0.0, 3e-3])
+    square, linear, constant = np.polyfit(away, [load_at(x + one) for one in away], 2)
+    assert fold == pytest.approx(constant - linear**2 / (4.0 * square), abs=1e-10)
+
+
+def test_the_stick_slip_cycle_by_the_map_of_releases():
+    orbit = fig06.cycle()
+    (stable,) = (one for one in stick_slip_orbits(orbit.system) if one.stable)
+    assert orbit.period == pytest.approx(stable.period, rel=1e-12)
+    assert abs(orbit.multipliers[1]) == pytest.approx(stable.multiplier, abs=1e-8)
+
+
+def test_the_dividing_velocity_leads_to_the_saddle_of_the_map_of_releases():
+    (saddle,) = (one for one in stick_slip_orbits(FIG5) if not one.stable)
+    releases = ReleaseMap(FIG5, TIGHTEST)
+
+    def beyond(velocity):
+        run = simulate(FIG5, (0.1, 0.0, velocity, 0.0), [0.0, 15.0], tolerance=TIGHTEST)
+        return next(releases.along(run)).angle - saddle.release_angle
+
+    expected = brentq(beyond, *(start[2] for start in FIG5_STARTS.values()), xtol=1e-13)
+    assert fig05.critical_velocity(engine_named("reference"), TIGHTEST) == pytest.approx(expected, abs=1e-11)
+    ends = [float(velocity > expected) for velocity in clutch_scale.VELOCITIES]
+    (claim,) = clutch_scale.STUDY.measure(engine_named("reference"), only=("ends",)).claims
+    assert claim.predicted.tolist() == ends
+
+
+SIX_POINTS = (
+    {
+        f"fig09/six-circles, {load:g} N, {i}": (theory.disc_of(load, i, 6), (load, i))
+        for load, i in theory.CIRCLES
+    }
+    | {
+        f"fig09/six-rests, {load:g} N": (theory.disc_of(load, None, 6), (load, None))
+        for load in theory.REST_LOADS
+    }
+    | {f"fig08/six-points, {load:g} N": (with_load(fig08.SIX, load), None) for load in fig08.LOADS}
+)
+
+
+@pytest.mark.parametrize(("disc", "near"), SIX_POINTS.values(), ids=SIX_POINTS)
+def test_means_of_steady_motions_on_six_points(disc, near):
+    near = theory.exact_motion(*near) if near else equilibrium_of(replace(disc, contact_points=None))
+    motion = steady_motion(engine_named("reference"), disc, near.state, TIGHTEST)
+    times = np.linspace(0.0, motion.period, 601)
+    states = rotated(slide(disc, motion.state, times, rtol=1e-11, atol=1e-12).y.T, -motion.frequency * times)
+    size = float(np.max(np.abs(states[0])))
+    assert np.delete(states[-1] - states[0], ANGLE) == pytest.approx(0.0, abs=1e-11 * size)
+    assert motion.mean == pytest.approx(states[:-1, :2].mean(axis=0), abs=1e-9 * size)
+    assert motion.spin == pytest.approx(states[-1, ANGLE] / motion.period + motion.frequency, abs=1e-12)
+
+
+@pytest.mark.parametrize("load", theory.STICK_LOADS)
+def test_a_released_disc_on_six_points_slips_as_by_the_plain_equations(load):
+    expected = growth_and_stick._slipped_in_reference(load)
+    found = growth_and_stick._slipped(SimpleNamespace(simulate=plain.simulate), load, 1e-7)
+    assert found == pytest.approx(expected, abs=1e-4)
+
+
+def test_the_modulated_cycle_by_events_of_scipy():
+    law = plain.by_law(RING.friction_force, contact_of(RING))
+
+    def spinning_up(_, state):
+        return plain.rates(RING, law, state)[-1]
+
+    options = BY_SCIPY | {"rtol": 1e-12, "atol": 1e-12, "dense_output": True}
+    run = slide(RING, START, (0.0, fig11.UNTIL), events=(outward, spinning_up), **options)
+    states = [
+        found[times > fig11.UNTIL / 4.0] for times, found in zip(run.t_events, run.y_events, strict=True)
+    ]
+    radii = np.hypot(*run.y_events[0][:, :2].T)
+    start, end = run.t_events[0][radii > 0.5 * radii.max()][-2:]
+    radius, spin = np.hypot(*states[0][:, :2].T), states[1][:, -1]
+    x, y, *_ = run.sol(np.linspace(start, end, 4001))
+    turn = np.unwrap(np.arctan2(y, x))[[0, -1]] @ [-1.0, 1.0]
+    expected = [end - start, turn, radius.min(), radius.max(), spin.min(), spin.max()]
+    found, error = fig11.predicted_modulation()
+    assert np.all(np.abs(found - expected) <= error)
+
+
+def test_extremes_on_six_points_by_a_hundred_times_as_many_samples():
+    dense = simulate(SIX, START, np.linspace(0.0, offsets.ROUND[-1], 120001), tolerance=1e-11)
+    spin = dense.states[:, -1]
+    expected = [dense.radius.min(), dense.radius.max(), spin.min(), spin.max()]
+    assert_read_within_its_error(fig11.extremes_of(offsets._reference()), expected)
+    assert expected[2] == pytest.approx(1.3635137, abs=5e-8)
+
+
+def test_ends_of_the_ensemble_at_the_scale_of_a_clutch_by_single_runs():
+    drawn = np.random.default_rng(1).uniform(-0.3, 0.3, (6, 4))
+    pin, starts = clutch_scale.scaled(FIG5), clutch_scale.CLUTCH.states(drawn)
+    duration = clutch_scale.CLUTCH.time * clutch_scale.ENSEMBLE_UNTIL
+    whirls = simulate_ensemble(pin, starts, duration=duration).end == EndState.WHIRL
+    ends = [simulate(pin, start, [0.0, duration]).at_end for start in starts]
+    assert [np.hypot(*end[:2]) > 2.0 * pin.offset for end in ends] == whirls.tolist()
+
+
+def test_lasting_stick_phases_begin_with_the_events_of_the_plain_equations():
+    (motion,) = trajectories.PINS_THAT_STICK.values()
+    first = trajectories.stick_times(trajectories.by_reference(motion))[:2]
+    assert first == pytest.approx(fig05.first_stick_and_release("whirl", 4e-13), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", power_balance.all_motions())
+def test_the_quadrature_closes_the_power_balance_of_an_exact_motion(name):
+    run = power_balance._run(engine_named("reference"), power_balance.all_motions()[name], TRUTH)
+    assert power_balance._relative_residual(power_balance.power_balance(run)) < 5e-12
+
+
+def test_the_documentation_lists_claims_that_exist():
+    page = (ROOT / "docs" / "verdicts.md").read_text(encoding="utf-8")
+    table = page.partition("share code\n")[2].partition("\n## ")[0]
+    known = {one.identity(study.name, "") for study in STUDIES for one in study.declared}
+    listed = set(re.findall(r"`([a-z0-9-]+/[a-z0-9-]+)`", table))
+    assert len(listed) > 15
+    assert listed <= known
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("wave", [1.0, 3.0, 7.0])
+def test_extremes_of_a_curve_between_its_samples(wave, periodic):
+    """The faulty code, the extreme samples alone, is off by many error bars."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 129) + 0.3
+    curve = np.sin(wave * angle) + 0.3 * np.cos(wave * angle)
+    read = measuring.extremes(curve, periodic=periodic)
+    size = np.hypot(1.0, 0.3)
+    assert np.all(np.abs(read.value - [-size, size]) <= read.error + 1e-15)
+    assert read.largest < 1e-3 * wave**6 * (angle[1] - angle[0]) ** 6 + 1e-15
+    assert np.min(np.abs([curve.min(), curve.max()] - read.value)) > 5.0 * read.largest
+
+
+def test_the_ends_of_a_curve_count_and_a_constant_has_no_error():
+    assert measuring.extremes(np.linspace(2.0, 5.0, 20)).value == pytest.approx([2.0, 5.0])
+    assert measuring.extremes(np.full(30, 2.0)).largest < 1e-14
