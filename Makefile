@@ -5,10 +5,13 @@ BIN := $(VENV)/bin
 # Imports compile the few modules that we use, so pip need not compile all. The warning concerns sibling folders.
 INSTALL = PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --no-compile --editable
 
+NUMERICAL := tests/reference_model tests/exudyn_models tests/fmu_models tests/compare/studies tests/compare/claims
+SIMD := 'import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", ()))'
+
 # If it is set, as in many images, every process compiles all these modules again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: report findings test lint docs paper dist benchmarks clean
+.PHONY: report findings test test-plain lint docs paper dist benchmarks clean
 
 report: $(VENV)/installed
 	$(BIN)/friction-discs report
@@ -18,7 +21,12 @@ findings: $(VENV)/installed
 	$(BIN)/python builders/findings.py write report/results.json
 
 test: $(VENV)/for-tests
-	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
+	$(BIN)/pytest --numprocesses auto --dist worksteal
+
+# Rounds as a processor without AVX and FMA does: BLAS, numpy and compiled kernels then sum in another order.
+test-plain: $(VENV)/for-tests
+	OPENBLAS_CORETYPE=Nehalem NUMBA_CPU_NAME=generic NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c $(SIMD))" \
+	$(BIN)/pytest --numprocesses auto --dist worksteal $(NUMERICAL)
 
 lint: $(VENV)/for-tests
 	$(BIN)/ruff check .

@@ -113,7 +113,8 @@ def workplace(tmp_path, monkeypatch, in_this_process):
         (tmp_path / name).write_text(engine, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 1)
-    monkeypatch.setattr("compare.sweep.figures.write_figures", lambda *_: ())  # other tests draw them
+    for drawn in ("compare.sweep.figures.write_figures", "compare.diagnosis.row.write_pictures"):
+        monkeypatch.setattr(drawn, lambda *_: ())  # other tests draw them
     monkeypatch.syspath_prepend(ROOT / "examples")
     monkeypatch.syspath_prepend(tmp_path)
 

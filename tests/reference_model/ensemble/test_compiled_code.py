@@ -9,6 +9,7 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
+from numba.core.registry import cpu_target
 from plain_engines import stuck_state
 
 from compare.claims.parameters import FIG5, FIG9, FIG11
@@ -24,6 +25,8 @@ from reference_model.ensemble.pin.lanes import PinLanes, _advance_in
 
 SIX = replace(FIG11, contact_points=6)
 ARM = platform.machine() in ("arm64", "aarch64")
+FEATURES = cpu_target.target_context.codegen().magic_tuple()[2].split(",")
+"""Features of the processor that numba compiles for."""
 VECTOR_ROOT, SCALAR_ROOT = (r"fsqrt\s+v", r"fsqrt\s+d") if ARM else (r"v?sqrtpd", r"v?sqrtsd")
 
 
@@ -72,6 +75,7 @@ def advance_points(lanes):
     advance_with(lanes, (1.0, 0.0, -0.5, 0.8, -0.5, -0.8), points_rates, no_edge, 1e-3, LANES)
 
 
+@pytest.mark.skipif(not ARM and "+avx2" not in FEATURES, reason="LLVM vectorises selections only with AVX2")
 @pytest.mark.parametrize(
     ("advance", "lanes", "roots"),
     [(advance_pins, PinLanes, 16), (advance_rings, DiscLanes, 40), (advance_points, DiscLanes, 40)],

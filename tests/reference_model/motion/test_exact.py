@@ -117,11 +117,13 @@ def test_motion_does_not_depend_on_the_requested_times():
 
 
 def test_positions_reach_the_tolerance_on_a_disc_much_faster_than_the_natural_frequency():
-    # An error of 1e-9·ωL in the velocity would become an error of 57e-9·L in the position.
-    pin = replace(FIG_5, damping=0.11150754, friction_force=0.06107226, disc_speed=-57.613787, offset=0.0)
+    # An error of 1e-9·ωL in a velocity would become an error of 576e-9·L in the position. Rounding chooses the steps,
+    # so it changes the error as much as another start does: 50 starts within 1 % have 0.02 to 0.19 tolerances, or 0.6
+    # to 4 if steps ignore the natural frequency.
+    pin = replace(FIG_5, damping=0.11150754, friction_force=0.06107226, disc_speed=-576.13787, offset=0.0)
     start, times = [39.56501, 51.794526, -31.507546, 74.691881], np.linspace(0.0, 100.0, 101)
     usual, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-11))
-    assert np.abs(usual.states - tight.states)[:, :2].max() < 1e-9 * tight.radius.max()
+    assert np.abs(usual.states - tight.states)[:, :2].max() < 0.4e-9 * tight.radius.max()
 
 
 def test_motion_beyond_the_range_of_floats_raises_an_error():

@@ -132,11 +132,15 @@ def test_holding_force_that_just_exceeds_friction_releases_the_body_briefly_in_e
     pin, start, width = grazing_pin(excess)
     body, times = variant(pin), np.linspace(0.0, 7.0, 71)
     start = stuck_state(body, *start[:2])
-    trajectory, tight = (simulate(body, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-12))
-    assert kinds(trajectory)[:3] == ["stick", "slip", "stick"]
-    slip = trajectory.phases[1]
+    trajectory, tight = (simulate(body, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-13))
+    assert kinds(trajectory)[:3] == kinds(tight)[:3] == ["stick", "slip", "stick"]
+    slip = tight.phases[1]
     # The pull exceeds friction for twice the width. Slip lasts three widths, until the integral of the parabola
     # vanishes. The neglected terms are smaller by a factor of the width.
     assert slip.start == pytest.approx((1.5 - width) / pin.disc_speed, abs=0.2 * width**2)
     assert slip.end - slip.start == pytest.approx(3.0 * width / pin.disc_speed, rel=width)
-    assert trajectory.stick_times == pytest.approx(tight.stick_times, abs=1e-8)
+    # The tolerance, times a size of 0.1, bounds the motion but not the end of slip: friction exceeds the pull there
+    # by only three times the excess, so each m/s of error in the slip speed takes so many seconds longer to vanish.
+    condition = pin.mass / (3.0 * excess * pin.friction_force)
+    assert np.abs(trajectory.states - tight.states).max() < 1e-10
+    assert trajectory.stick_times == pytest.approx(tight.stick_times, abs=1e-10 * condition)
