@@ -66,6 +66,10 @@ GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 """Largest relative error of each grade."""
 
 
+DOUBT = 3.0
+"""Factor to which an error estimate beyond the resolution is known, where few runs show how fast errors fall."""
+
+
 @dataclass(frozen=True)
 class ErrorBudget:
     """Difference that the errors of the engine and the formula can explain.
@@ -261,11 +265,13 @@ class Claim:
     def verdict(self) -> Verdict:
         """Verdict: differs beyond both budget and resolution, or without a number.
 
-        Otherwise it agrees if its error is finite and within the resolution or a grade, else it is inconclusive.
+        A budget beyond the resolution must be exceeded ``DOUBT`` times. Otherwise the claim agrees if the budget is
+        finite, covers the difference and lies within the resolution or a grade, else it is inconclusive.
         """
         if np.any(self._wrong):
             return Verdict.DIFFERS
-        if np.any(self._open) or (np.any(self.budget.total > self.budget.resolution) and self.grade is None):
+        coarse = np.any(self.budget.total > self.budget.resolution) and self.grade is None
+        if np.any(self._open) or coarse or np.any(self.difference > self._allowed):
             return Verdict.INCONCLUSIVE
         return Verdict.AGREES
 
@@ -277,9 +283,14 @@ class Claim:
 
     @property
     def _wrong(self) -> NDArray[np.bool_]:
-        """True where a number is missing, or the difference matters; one wrong answer decides."""
-        allowed = np.maximum(self.budget.total, 0.0 if self.answers else self.budget.negligible)
-        return ~self._open & ~((self.difference <= allowed) & np.isfinite(self.measured))
+        """True where a number is missing, or the difference matters and exceeds even a doubtful budget."""
+        doubt = np.where((self.budget.total > self.budget.resolution) & (not self.answers), DOUBT, 1.0)
+        return ~self._open & ~((self.difference <= doubt * self._allowed) & np.isfinite(self.measured))
+
+    @property
+    def _allowed(self) -> FloatArray:
+        """Difference that the budget explains, or that does not matter; one wrong answer always matters."""
+        return np.asarray(np.maximum(self.budget.total, 0.0 if self.answers else self.budget.negligible))
 
     @property
     def caution(self) -> str:

@@ -82,12 +82,14 @@ class Shares:
 class Repeat:
     """Difference between two equal calls, as a share of the states, and the declared precision.
 
-    ``deaf`` is True if a motion does not change with the tolerance or the step.
+    ``deaf`` is True if a motion does not change with the tolerance or the step. ``shift`` is the difference, as a
+    share of the states, from the same motion that starts at ``LATER``.
     """
 
     difference: float
     declared: float
     deaf: bool = False
+    shift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -253,17 +255,27 @@ def moments(engine: Engine) -> Shares:
     return Shares(ladder.finest, SAFETY * changes + noise)
 
 
+LATER = 4.0
+"""Time in s at which a motion starts that otherwise starts at 0; nothing in it depends on time."""
+
+
 def repeat(engine: Engine) -> Repeat:
-    """Return the difference between two equal calls."""
+    """Return the differences between two equal calls and a later start."""
     motion = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
     if not engine.simulates(probes.TURN):
         motion = (probes.SWING, (1.0, 0.0, 0.0, 0.0), (0.0, 0.5))
-    usual, again, coarse = (
-        engine.simulate(*motion, tolerance=tolerance).states
-        for tolerance in (USUAL_TOLERANCE, USUAL_TOLERANCE, float(tolerances(engine)[0]))
+    later = (*motion[:2], tuple(LATER + time for time in motion[2]))
+    asked = (
+        (motion, USUAL_TOLERANCE),
+        (motion, USUAL_TOLERANCE),
+        (later, USUAL_TOLERANCE),
+        (motion, float(tolerances(engine)[0])),
     )
-    difference = float(np.max(np.abs(again - usual)) / np.max(np.abs(usual)))
-    return Repeat(difference, engine.precision, bool(np.array_equal(usual, coarse)))
+    usual, again, moved, coarse = (engine.simulate(*one, tolerance=rung).states for one, rung in asked)
+    difference, shift = (
+        float(np.max(np.abs(other - usual)) / np.max(np.abs(usual))) for other in (again, moved)
+    )
+    return Repeat(difference, engine.precision, bool(np.array_equal(usual, coarse)), shift)
 
 
 def lag(engine: Engine) -> Lag:

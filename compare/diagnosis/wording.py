@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
+from compare.diagnosis.findings import LATER, MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, FITS, NEAR, NOTHING, Friction
 from compare.diagnosis.probes import FAR, NONLINEAR, SETTLES_FOR, SLIDE, SLIDES_FOR, SPEED, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
@@ -240,9 +240,18 @@ def _hidden_damping(shares: FloatArray) -> FloatArray:
     return rates
 
 
+LEAST_SHIFT = 0.05
+"""Smallest relative effect of a later start that counts; steps may fall on other times."""
+
+
 def of_repeat(repeat: Repeat | None) -> list[Remark]:
-    """Return whether equal calls have equal results."""
-    if repeat is None or repeat.difference == 0.0:
+    """Return whether equal calls have equal results, at any time of the start."""
+    if repeat is None:
+        return []
+    if repeat.shift > LEAST_SHIFT:
+        text = f"A motion that starts at t = {LATER:g} s differs by {error_text(repeat.shift)} of its size"
+        return [Remark(f"{text} from the same motion that starts at 0; begin at times[0].", True, MOTION)]
+    if repeat.difference == 0.0:
         return []
     text = f"Equal calls return states that differ by {error_text(repeat.difference)} of their size"
     if repeat.difference <= 2.0 * repeat.declared:

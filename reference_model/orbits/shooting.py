@@ -56,6 +56,9 @@ MOST_ITERATIONS = 25
 CONVERGED = 1e-9
 """Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
+SMOOTH = 0.1
+"""Largest residual as a multiple of the tolerance, to which adaptive steps make the end state a smooth function."""
+
 ABOVE_NOISE = 10.0
 """Largest residual as a multiple of the engine's precision, which enters a residual several times."""
 
@@ -100,7 +103,7 @@ class ShootingProblem:
     @property
     def converged(self) -> float:
         """Largest relative residual of an orbit."""
-        return max(CONVERGED, ABOVE_NOISE * self.precision)
+        return max(CONVERGED, SMOOTH * self.tolerance, ABOVE_NOISE * self.precision)
 
     def unknowns(self, state: FloatArray, period: float, load: float, turn: float) -> FloatArray:
         """Return the unknowns of the motion from ``state``, shape (4,) or (6,)."""

@@ -19,7 +19,8 @@ from compare.report.numbers import account, decision, in_short, worst
         (0.1, 0.5, 0.0, 1e-6, Verdict.INCONCLUSIVE),
         (0.1, 0.0, 0.5, 1e-6, Verdict.INCONCLUSIVE),
         (0.1, np.inf, 0.0, 1e-6, Verdict.INCONCLUSIVE),
-        (0.6, 0.5, 0.0, 1e-6, Verdict.DIFFERS),  # more than even a poor measurement explains
+        (0.6, 0.5, 0.0, 1e-6, Verdict.INCONCLUSIVE),
+        (1.6, 0.5, 0.0, 1e-6, Verdict.DIFFERS),  # more than even a poor measurement explains
         (np.nan, 1.0, 0.0, 1.0, Verdict.DIFFERS),
         (np.inf, 1.0, 0.0, 1.0, Verdict.DIFFERS),
         (np.nan, np.nan, 0.0, 1.0, Verdict.DIFFERS),

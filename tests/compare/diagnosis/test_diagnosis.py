@@ -220,6 +220,16 @@ def test_answers_that_differ_from_call_to_call_are_noticed():
     assert row.verdict == UNDECIDED
 
 
+def test_an_engine_that_starts_every_motion_at_zero_is_noticed():
+    def simulate(system, start, times, **accuracy):
+        found = RIGHT.function(system, start, [0.0, *(time for time in times if time > 0.0)], **accuracy)
+        return Trajectory(system, np.asarray(times), found.states[-len(times) :])
+
+    row, found = sentences(replace(RIGHT, function=simulate), ("repeat",))
+    assert found.startswith(f"{MOTION}a motion that starts at t = 4 s differs by ")
+    assert row.verdict == WRONG
+
+
 def test_an_unknown_law_is_described_by_its_largest_deviation():
     row, found = sentences(
         engine("odd", limit=lambda system, *_: 1.0 + 0.2 * math.sin(3.0 * math.log(system.mass))),
