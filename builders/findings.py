@@ -42,6 +42,7 @@ FIGURE = re.compile(r"\]\(([\w-]+\.svg)\)")
 IN_README = (
     "claims",
     "verdicts: independent",
+    "verdicts: friction",
     "fig05: dividing velocity, reference, ±",
     "stability-map: lower friction_force, 3 digits",
     "stability-map: upper friction_force, 3 digits",
