@@ -57,7 +57,7 @@ CONVERGED = 1e-9
 """Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
 SMOOTH = 0.1
-"""Largest residual as a multiple of the tolerance, to which adaptive steps make the end state a smooth function."""
+"""Largest residual as a multiple of the tolerance, because adaptive steps depend on the start in jumps."""
 
 ABOVE_NOISE = 10.0
 """Largest residual as a multiple of the engine's precision, which enters a residual several times."""
