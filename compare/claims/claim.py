@@ -67,7 +67,7 @@ GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 
 
 DOUBT = 3.0
-"""Factor to which an error estimate beyond the resolution is known, where few runs show how fast errors fall."""
+"""Uncertainty factor of an error estimate beyond the resolution, because two coarse runs show little about errors."""
 
 
 @dataclass(frozen=True)

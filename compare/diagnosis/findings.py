@@ -256,7 +256,7 @@ def moments(engine: Engine) -> Shares:
 
 
 LATER = 4.0
-"""Time in s at which a motion starts that otherwise starts at 0; nothing in it depends on time."""
+"""Time in s of a later start. The motion does not depend on time, so its states must be the same."""
 
 
 def repeat(engine: Engine) -> Repeat:
