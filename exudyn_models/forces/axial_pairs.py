@@ -11,7 +11,7 @@ together; its multiplier is the moment of friction. ``stick.switching`` finds th
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property, partial
@@ -148,7 +148,8 @@ class AxialStick:
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
     mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
     axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points.
-    ``on_axis`` is False if the bodies can slide sideways. ``largest`` is the largest friction in the run.
+    ``on_axis`` is False if the bodies can slide sideways. ``largest`` is the largest friction in the run. ``shared``
+    returns the moment of a contact at rest that others hold too; otherwise the constraint has the moment.
     """
 
     kinds: Kinds
@@ -162,6 +163,7 @@ class AxialStick:
     point: int | None = None
     on_axis: bool = True
     largest: float = 0.0
+    shared: Callable[[], float] | None = None
 
     @property
     def parts(self) -> Sequence[AxialStick]:
@@ -248,7 +250,9 @@ class AxialStick:
         return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
 
     def held_moment(self, mbs: Any) -> float:
-        """Return the moment in N m of the constraint on the disc."""
+        """Return the moment in N m of a contact at rest on the disc."""
+        if self.shared is not None:
+            return self.shared()
         return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:

@@ -136,20 +136,26 @@ def _share_an_axis(master: Side, disc: Side) -> bool:
 def check_axes(mbs: Any, master: Side, disc: Side) -> None:
     """Raise ``ValueError`` if a body turns across the contact's axis, so friction would not resist its spin.
 
-    Fixed axes must be parallel to it; others may deviate by 45° at the start.
+    Fixed axes must be parallel to it; others may deviate by 45°, as may the spin of a body in space relative to the
+    other body at the start.
     """
     fixed = master.kind in FLAT and disc.kind in FLAT
     axis = _axes_and_spin(mbs, master)[0] @ master.rotation[:, 2]
-    for side in (master, disc):
+    for side, other in ((master, disc), (disc, master)):
         if side.kind == GROUND:
             continue
-        spin = _axes_and_spin(mbs, side)[1]
-        if np.linalg.norm(np.cross(axis, spin)) > (PARALLEL if fixed else 1.0) * abs(axis @ spin):
+        own = spin = _axes_and_spin(mbs, side)[1]
+        if side.kind in SPATIAL:
+            spin = own - _initial_spin(mbs, other)
+        allowed = max(
+            (PARALLEL if fixed else 1.0) * abs(float(axis @ spin)), PARALLEL * float(np.linalg.norm(own))
+        )
+        if float(np.linalg.norm(np.cross(axis, spin))) > allowed:
             turns = "initially spins" if side.kind in SPATIAL else "turns"
             raise ValueError(
                 f"{side.name} {int(side.node)} {turns} about {_shown(spin)}: it must turn about the axis of the "
-                f"contact, {_shown(axis)}, which is the z-axis of the master's body or of the ground, turned by "
-                "master_rotation"
+                f"contact, {_shown(axis)}, relative to the other body; it is the z-axis of the master's body or "
+                "of the ground, turned by master_rotation"
             )
 
 
@@ -161,6 +167,15 @@ def _axes_and_spin(mbs: Any, side: Side) -> tuple[FloatArray, FloatArray]:
     rates = entry["initialVelocities"][TRANSLATIONS[side.kind] :]
     _, axes, turning = frame(side.kind, entry["referenceCoordinates"] + entry["initialCoordinates"], 0)
     return np.array(axes).T, np.array(turning[: len(rates)]).T @ rates
+
+
+def _initial_spin(mbs: Any, side: Side) -> FloatArray:
+    """Return the initial angular velocity in rad/s."""
+    if side.kind == GROUND:
+        return np.zeros(3)
+    spin = _axes_and_spin(mbs, side)[1]
+    rate = mbs.GetNode(side.node)["initialVelocities"][-1] if side.kind in FLAT else 1.0
+    return np.asarray(rate * spin)
 
 
 def _shown(vector: FloatArray) -> list[float]:

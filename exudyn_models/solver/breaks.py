@@ -7,7 +7,6 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.solver.repeated_steps import kept
 from reference_model.systems import finite_number
 
 GAP = 1e-13
@@ -33,8 +32,7 @@ def parts_of_run(
 ) -> Generator[bool, None, None]:
     """Set ``settings`` for each part of the run in turn; yield whether its end is the next initial state.
 
-    Files and sensors record all parts. At the end all settings are restored, and the initial values too unless
-    ``update_initial_values``.
+    Files and sensors record all parts. At the end the initial values are restored unless ``update_initial_values``.
     """
     options, outputs = settings.timeIntegration, settings.solution
     start, end, steps = options.startTime, options.endTime, options.numberOfSteps
@@ -42,19 +40,14 @@ def parts_of_run(
     gaps = [max(GAP * (end - start), 4.0 * np.spacing(abs(value))) for value in breaks]
     starts = [start, *(value + gap for value, gap in zip(breaks, gaps, strict=True))]
     ends = [*(value - gap for value, gap in zip(breaks, gaps, strict=True)), end]
-    with (
-        kept(options, "startTime", "endTime", "numberOfSteps"),
-        kept(outputs.file, "append", "writeInitialValues"),
-        kept(outputs.sensors, "append"),
-    ):
-        try:
-            for i, (first, last) in enumerate(zip(starts, ends, strict=True)):
-                options.startTime, options.endTime = first, last
-                options.numberOfSteps = max(1, math.ceil((last - first) / (end - start) * steps - 1e-6))
-                if i > 0:
-                    outputs.file.append = outputs.sensors.append = True
-                    outputs.file.writeInitialValues = False
-                yield update_initial_values or last != end
-        finally:
-            if initial is not None and not update_initial_values:
-                mbs.systemData.SetSystemState(initial, exu.ConfigurationType.Initial)
+    try:
+        for i, (first, last) in enumerate(zip(starts, ends, strict=True)):
+            options.startTime, options.endTime = first, last
+            options.numberOfSteps = max(1, math.ceil((last - first) / (end - start) * steps - 1e-6))
+            if i > 0:
+                outputs.file.append = outputs.sensors.append = True
+                outputs.file.writeInitialValues = False
+            yield update_initial_values or last != end
+    finally:
+        if initial is not None and not update_initial_values:
+            mbs.systemData.SetSystemState(initial, exu.ConfigurationType.Initial)

@@ -21,23 +21,16 @@ WITHOUT_RESTART: dict[str, Any] = {
 
 
 @contextmanager
-def kept(settings: Any, *names: str) -> Iterator[None]:
-    """Restore the named ``settings`` on exit."""
-    before = {name: getattr(settings, name) for name in names}
+def changed(settings: Any, **values: Any) -> Iterator[None]:
+    """Change ``settings`` temporarily."""
+    before = {name: getattr(settings, name) for name in values}
     try:
+        for name, value in values.items():
+            setattr(settings, name, value)
         yield
     finally:
         for name, value in before.items():
             setattr(settings, name, value)
-
-
-@contextmanager
-def changed(settings: Any, **values: Any) -> Iterator[None]:
-    """Change ``settings`` temporarily."""
-    with kept(settings, *values):
-        for name, value in values.items():
-            setattr(settings, name, value)
-        yield
 
 
 def newton_without_restart(mbs: Any, newton: Any) -> AbstractContextManager[None]:

@@ -13,6 +13,7 @@
   (``stick.switching``). Sensors have an additional row at each of these times.
 """
 
+import copy
 import math
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
@@ -79,6 +80,7 @@ def solve_dynamic(
 
     """
     solver = simulationSettings.timeIntegration.solverType if solverType is None else solverType
+    simulationSettings = copy.copy(simulationSettings)  # other runs may share them
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     _check_constraints(mbs, solver)

@@ -9,25 +9,25 @@ import scipy.linalg
 from scipy.optimize import minimize
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
+from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.sticking_contacts import (
     PlanarContact,
     StickingContact,
-    joints_and_mass,
-    lock_places,
+    joints_of,
 )
 from reference_model.systems import FloatArray
 
 
 class LockedContacts:
-    """Joints and locked contacts of an assembled model at its initial values and the time t (s).
+    """Joints and locked contacts of an assembled model at the state where ``dynamics`` was evaluated.
 
     Gradients refer to the n velocities of the model.
     """
 
-    def __init__(self, mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
+    def __init__(self, mbs: Any, dynamics: Dynamics, contacts: Sequence[StickingContact]) -> None:
         self._mbs, self._contacts = mbs, contacts
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        self._joints, self._mass = joints_and_mass(mbs, t, contacts)
+        self._joints, self._mass = joints_of(mbs, dynamics, contacts), dynamics.mass
 
     def is_held(self, contact: StickingContact) -> bool:
         """Return whether joints and the other locks fix the slip of a contact."""
@@ -52,10 +52,12 @@ class LockedContacts:
                 locked.append(contact)
 
     def set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
-        """Give a contact the ``slip`` by a change of the initial velocities."""
+        """Give a contact the ``slip``, as far as joints allow, by a change of the initial velocities."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
         velocities = np.array(data.GetODE2Coordinates_t(initial))
-        velocities += self._velocities_of(contact, slip - contact.slip_rows(self._mbs) @ velocities)
+        change, allowed = slip - contact.slip_rows(self._mbs) @ velocities, contact.planar.allowed
+        change = allowed @ np.linalg.lstsq(allowed, change, rcond=None)[0]
+        velocities += self._velocities_of(contact, change)
         data.SetODE2Coordinates_t(velocities, initial)
 
     def _velocities_of(self, contact: PlanarContact, slip: FloatArray) -> FloatArray:
@@ -115,31 +117,6 @@ class LockedContacts:
         masses = np.diag(self._mass)
         light = np.min(masses, where=masses > 0.0, initial=np.inf)
         return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))
-
-    def correct(self) -> None:
-        """Correct the accelerations and constraint forces at the start of a run for locks in the plane.
-
-        Exudyn neglects that the gradients of user-defined constraints vary.
-        """
-        locked = [contact for contact in self._contacts if contact.mode == Mode.LOCKED]
-        bias = np.concatenate([contact.bias(self._mbs) for contact in locked] or [np.zeros(1)])
-        if not bias.any():
-            return
-        data, scale = self._mbs.systemData, self._mobilities()
-        rows = self._held_rows(locked) * scale
-        size, count = len(scale), len(rows)
-        system = np.zeros((size + count, size + count))
-        system[:size, :size] = scale[:, None] * self._mass * scale
-        system[:size, size:], system[size:, :size] = rows.T, rows
-        missing = np.concatenate([np.zeros(size + len(self._joints)), -bias])
-        change = np.linalg.lstsq(system, missing, rcond=None)[0]
-        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + scale * change[:size])
-        forces = np.array(data.GetAECoordinates())
-        joints = np.setdiff1d(np.arange(len(forces)), lock_places(self._mbs, self._contacts))
-        forces[joints] += change[size : size + len(self._joints)]
-        places = [data.GetObjectLTGAE(lock)[0] for contact in locked for lock in contact.active_locks()]
-        forces[places] += change[size + len(self._joints) :]
-        data.SetAECoordinates(forces)
 
 
 def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], size: int) -> FloatArray:

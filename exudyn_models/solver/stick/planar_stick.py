@@ -56,6 +56,8 @@ class PlanarStick(AxialStick):
     """
     radius: float = 0.0
     """Distance of the disc's centre from the master's axis in m, constant in stick."""
+    held: bool = False
+    """True if joints or other contacts determine the slip of this sliding contact."""
     frozen: bool = False
     """True in the last step before rest: friction keeps its value from the start of the step."""
     predicts: bool = False
@@ -182,7 +184,9 @@ class PlanarStick(AxialStick):
         """Prepare the first iteration of a step."""
         self.predicts = self.slides and not self.idle
         if self.predicts:
-            self._start = self.motion(q, q_t, np.zeros(len(q)))
+            start = self.motion(q, q_t, np.zeros(len(q)))
+            # A prescribed motion begins without slip.
+            self._start = start if start.potential > 0.0 else start._replace(slip=NEGLIGIBLE * self.direction)
 
     def _linear(
         self,

@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.solver.stick.sensor_rows import ON_GRID
 from exudyn_models.solver.stick.slip_motion import SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact
 from reference_model.systems import FloatArray
+
+ON_GRID = 1e-9
+"""Tolerance of multiples of a step, as a share of it."""
 
 APPROACH = 0.9
 """Largest share of the slip that its acceleration could remove in a step."""
@@ -80,7 +82,8 @@ class SlidingSteps:
         for contact in self._contacts:
             if contact.free_to_slide:
                 motion = contact.slid(self._mbs)
-                self._directions[contact] = contact.scaled(motion.gradient)
+                if motion.potential > 0.0:  # a prescribed motion begins without slip
+                    self._directions[contact] = contact.scaled(motion.gradient)
                 shortest = contact.rest_share * self._step
                 self.rests |= self.stops(contact, motion)
                 if motion.rate_potential > 0.0:

@@ -10,16 +10,19 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
+from exudyn_models.forces.axial_pairs import FREE, AxialStick, Mode, spanned
 from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.items import CURRENT
-from exudyn_models.solver.starting_rates import initialised_solver
+from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
 from exudyn_models.solver.stick.slip_motion import SlipMotion
 from reference_model.systems import FloatArray
 
-SOON = 1e-9
-"""Time in s that gives the slip of a contact at rest the sign of its acceleration."""
+STILL = 1e-8
+"""Largest slip in m/s or rad/s of a contact at rest whose slip joints and prescribed motions determine."""
+
+AHEAD = 1e-3
+"""Time in s that shows whether a prescribed motion starts to move a contact at rest."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +68,10 @@ class StickingContact:
         assert self.stick.mode is not None
         return self.stick.mode
 
-    def enter(self, mbs: Any, mode: Mode) -> None:
-        """Switch to a mode."""
+    def enter(self, mbs: Any, mode: Mode, lock: bool = True) -> None:
+        """Switch to a mode; without a ``lock``, others hold the contact at rest."""
         self.stick.mode = mode
-        mbs.SetObjectParameter(self.stick.locks[0], "activeConnector", mode == Mode.LOCKED)
+        mbs.SetObjectParameter(self.stick.locks[0], "activeConnector", lock and mode == Mode.LOCKED)
         if (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
@@ -88,28 +91,22 @@ class StickingContact:
 
     def enter_first(self, mbs: Any, t: float) -> None:
         """Switch to the mode that load and initial slip suggest."""
-        slip = self.slip(mbs, configuration=exu.ConfigurationType.Initial)
+        slip = self.slip(mbs, exu.ConfigurationType.Initial)
         self.enter(mbs, Mode.OPEN if self.holding(t) == 0.0 else Mode(int(np.sign(slip))))
-
-    def following(self, mbs: Any, t: float) -> Mode:
-        """Return the next mode at the end of the present one, if no other contact changes."""
-        if self.holding(t) == 0.0:
-            return Mode.OPEN
-        if self.mode == Mode.OPEN:
-            return Mode(int(np.sign(self.slip(mbs) or self.slip(mbs, SOON))))
-        return self.driven(mbs) if self.mode == Mode.LOCKED else Mode.LOCKED
 
     def holding(self, t: float) -> float:
         """Return the static friction, a moment in N m."""
         return self.stick.without_rounding(max(self.stick.limits(t)))
 
+    def capacities(self, t: float) -> tuple[float, float]:
+        """Return the largest moments in N m against sliding forward and backward, > 0 of a one-way clutch too."""
+        forward, backward = self.stick.limits(t)
+        least = FREE * max(forward, backward)
+        return max(forward, least), max(backward, least)
+
     def opens_or_closes(self, holding: float) -> bool:
         """Return whether static friction has vanished, or acts on an open contact."""
         return (holding == 0.0) != (self.mode == Mode.OPEN)
-
-    def driven(self, mbs: Any) -> Mode:
-        """Return the mode into which the load drives a locked contact."""
-        return Mode.BACKWARD if self.stick.held_moment(mbs) > 0.0 else Mode.FORWARD
 
     def rows(self, mbs: Any) -> FloatArray:
         """Return the gradients of the locked slips for all velocities of the model."""
@@ -140,41 +137,20 @@ class StickingContact:
             data.GetODE2Coordinates_tt(configuration)[places],
         )
 
-    def slip(self, mbs: Any, ahead: float = 0.0, configuration: Any = CURRENT) -> float:
-        """Return S in rad/s, now or a short time ``ahead`` (s)."""
-        data = mbs.systemData
-        q = data.GetODE2Coordinates(configuration)[self.places]
-        q_t = data.GetODE2Coordinates_t(configuration)[self.places]
-        if ahead > 0.0:
-            q += ahead * q_t
-            q_t += ahead * data.GetODE2Coordinates_tt(configuration)[self.places]
-        return self.stick.slip(q, q_t)
+    def slip(self, mbs: Any, configuration: Any = CURRENT) -> float:
+        """Return S in rad/s."""
+        return self.stick.slip(*self._state(mbs, configuration)[:2])
 
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        It is the slip in the direction of sliding (rad/s), the unused share of a locked contact's capacity, or ±1
-        without load or coefficient.
+        It is the slip in the direction of sliding (rad/s), 1 at rest, or ±1 without load or coefficient.
         """
         stick, mode = self.stick, self.mode
         limits = stick.limits(t)
         if self.opens_or_closes(stick.without_rounding(max(limits))):
             return -1.0
-        if mode == Mode.OPEN or stick.idle:
-            return 1.0
-        if mode == Mode.LOCKED:
-            return stick.unused(limits, stick.held_moment(mbs))
-        return int(mode) * self.slip(mbs)
-
-    def overload(self, mbs: Any, t: float) -> float:
-        """Return the share of the capacity that a locked contact holds, else 0."""
-        return 0.0 if self.mode != Mode.LOCKED else self.stick.capacity_share(mbs, t)
-
-    def reverses(self, mbs: Any, time: float) -> bool:
-        """Return whether a sliding contact stops within a ``time`` (s)."""
-        if not self.stick.slides:
-            return False
-        return int(self.mode) * self.slip(mbs, time) < 0.0
+        return int(mode) * self.slip(mbs) if stick.slides else 1.0
 
 
 class PlanarContact(StickingContact):
@@ -189,8 +165,8 @@ class PlanarContact(StickingContact):
 
     @property
     def free_to_slide(self) -> bool:
-        """True if the contact slides and nothing else holds it."""
-        return self.stick.slides and not self.stick.idle
+        """True if the contact slides and nothing else determines its slip."""
+        return self.stick.slides and not self.planar.held
 
     def allow(self, mbs: Any, by_joints: FloatArray, velocities: FloatArray) -> None:
         """Let the contact lock the slips of ``velocities``, shape (n, m); joints allow those ``by_joints``."""
@@ -206,12 +182,12 @@ class PlanarContact(StickingContact):
         """Return a dimensionless gradient of P."""
         return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
 
-    def enter(self, mbs: Any, mode: Mode) -> None:
+    def enter(self, mbs: Any, mode: Mode, lock: bool = True) -> None:
         """Switch to a mode."""
         self.stick.mode = mode
-        active = self.active_locks() if mode == Mode.LOCKED else ()
-        for lock in self.stick.locks:
-            mbs.SetObjectParameter(lock, "activeConnector", lock in active)
+        active = self.active_locks() if lock and mode == Mode.LOCKED else ()
+        for own in self.stick.locks:
+            mbs.SetObjectParameter(own, "activeConnector", own in active)
 
     def enter_first(self, mbs: Any, t: float) -> None:
         """Switch to the mode that load and initial slip suggest."""
@@ -228,9 +204,19 @@ class PlanarContact(StickingContact):
         return self.planar.without_rounding(self.planar.holding_force(t))
 
     def driven(self, mbs: Any) -> Mode:
-        """Return the mode into which the load drives a locked contact, and store the direction."""
-        _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
+        """Return the mode into which the load or a prescribed motion drives a contact, and store the direction."""
+        slip, moved = self.carried(mbs)
+        _, share = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
+        self.planar.direction = slip / moved if moved > STILL else share
         return self._sliding_mode(self.planar.direction)
+
+    def carried(self, mbs: Any, ahead: float = AHEAD) -> tuple[FloatArray, float]:
+        """Return the slip that joints impose on a contact at rest after a time ``ahead`` (s), and its potential."""
+        if not self.planar.rests or self.planar.allowed.shape[1] == self.planar.most_locks:
+            return np.zeros(3), 0.0
+        motion = self.motion(mbs)
+        slip = motion.slip + ahead * motion.rate
+        return slip, self.planar.potential_of(slip)
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion, and store its radius for the capacity in stick."""
@@ -258,11 +244,18 @@ class PlanarContact(StickingContact):
         holding = self.holding(t)
         if self.opens_or_closes(holding):
             return -1.0
-        return 1.0 - self.overload(mbs, t)
+        if self.stick.slides and self.planar.held and not self.stick.idle:  # a prescribed motion may end
+            return self.slid(mbs).potential / STILL - 0.5
+        return 1.0 - max(self.overload(mbs, t), self.carried(mbs, 0.0)[1] / STILL)
 
     def overload(self, mbs: Any, t: float) -> float:
         """Return the share of the capacity that a contact at rest holds, else 0."""
         return self.planar.capacity_share(mbs, t) if self.planar.rests else 0.0
+
+    def hold(self, mbs: Any, held: bool) -> None:
+        """Note whether joints or other contacts hold a sliding contact, and whether it rests."""
+        self.planar.held = self.stick.idle = held
+        self.stick.idle = held and self.carried(mbs)[1] <= STILL
 
     def reverses(self, mbs: Any, time: float) -> bool:
         """Return whether a sliding contact stops within a ``time`` (s)."""
@@ -302,7 +295,11 @@ def _locate(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
         for part in contact.stick.parts
         if isinstance(part, PlanarStick)
     ]
-    joints = joints_and_mass(mbs, t, contacts)[0] if parts else np.empty(0)
+    if not parts:
+        return
+    dynamics = Dynamics(mbs, t, 1.0)
+    dynamics.evaluate(t)
+    joints = joints_of(mbs, dynamics, contacts)
     for part in parts:
         across = part.slip_rows(mbs)[:2]
         across[np.abs(across) < NEGLIGIBLE] = 0.0
@@ -328,22 +325,8 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
                 mbs.SetObjectParameter(lock, "activeConnector", False)
 
 
-def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:
-    """Return the gradients of all constraints except the locks of ``contacts``, and the mass matrix.
-
-    The gradients, shape (m, n), refer to the n velocities, up to factors, at the initial values.
-    """
-    data = mbs.systemData
-    with initialised_solver(mbs, t) as solver:
-        solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
-        solver.ComputeJacobianAE(mbs, 1.0, 1.0, 1.0)
-        gradients = np.array(solver.GetSystemJacobian())[-data.AEsize() :, : data.ODE2Size()]
-        solver.ComputeMassMatrix(mbs)
-        mass = np.array(solver.GetSystemMassMatrix())[: data.ODE2Size(), : data.ODE2Size()]
-    return np.delete(gradients, lock_places(mbs, contacts), axis=0), mass
-
-
-def lock_places(mbs: Any, contacts: Sequence[StickingContact]) -> list[int]:
-    """Return the positions of the locks of ``contacts`` among the constraints."""
+def joints_of(mbs: Any, dynamics: Dynamics, contacts: Sequence[StickingContact]) -> FloatArray:
+    """Return the gradients of all constraints except the locks of ``contacts``, shape (m, n), as last evaluated."""
     locks = [lock for contact in contacts for lock in contact.stick.locks]
-    return [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]
+    places = [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]
+    return np.delete(dynamics.gradients, places, axis=0)

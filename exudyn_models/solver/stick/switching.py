@@ -4,26 +4,35 @@ Between two changes the equations are smooth. A step that passes a change is rep
 ``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
 """
 
+import copy
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import exudyn as exu
 import numpy as np
+from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import Mode
-from exudyn_models.solver.repeated_steps import kept, user_function
+from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.stick.mode_choice import MOST_CHANGES, ModeChoice
-from exudyn_models.solver.stick.sensor_rows import ON_GRID, SensorRows
-from exudyn_models.solver.stick.sliding_steps import SlidingSteps
+from exudyn_models.solver.stick.sliding_steps import ON_GRID, SlidingSteps
 from exudyn_models.solver.stick.sticking_contacts import ModeChange, PlanarContact, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 LOCATED = 1e-12
-"""Accuracy of the time of a change, as a share of a step."""
+"""Resolution of the time of a change, as a share of a step."""
+
+SOON = 1e-6
+"""Share of a step within which a secant finds the time of a change without a further try."""
+
+SMALL = 1e-3
+"""Largest margin near a change, relative to those of the step; margins that jump are larger."""
+
+SHORT = exu.DynamicSolverType.TrapezoidalIndex2
+"""Solver of shorter steps; GeneralizedAlpha would divide errors of positions by their square."""
 
 FORCES = 1e-12
 """Residual of Newton's method for contacts in the plane, relative to its first value or to the friction.
@@ -33,6 +42,10 @@ Constraint forces, which decide about releases, contain errors of velocities div
 
 ITERATIONS = 200
 """Smallest limit of Newton's iterations; loads that depend on forces need many, because the Jacobian omits them."""
+
+
+_Point = tuple[float, FloatArray]
+"""A time in s, and the margins at this time."""
 
 
 def run_switching(
@@ -49,7 +62,7 @@ def run_switching(
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     state = data.GetSystemState(initial)
-    run = _Run(mbs, settings, solver, contacts)
+    run = _Run(mbs, copy.copy(settings), solver, contacts)
     try:
         run.run(before)
     finally:
@@ -64,13 +77,14 @@ class _Run:
         self._options = options = settings.timeIntegration
         self._start, self._end, self._steps = options.startTime, options.endTime, options.numberOfSteps
         self._step = (self._end - self._start) / self._steps
-        self._sensors = SensorRows(settings.solution.sensors, self._start, self._step)
+        self._sensors = _SensorRows(settings.solution.sensors, self._start, self._step)
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
+        self._announced, self._settled = -math.inf, list[float]()
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
         self._accelerations = np.empty(0)
         self._slides = SlidingSteps(mbs, self._planar, self._step)
-        self._modes = ModeChoice(mbs, self._start, contacts, self._slides, self._step, self._at_start)
+        self._modes = ModeChoice(mbs, self._start, contacts, self._slides, self._step)
         self._look: Callable[[float], bool] = lambda t: True
         self.changes: list[ModeChange] = []
 
@@ -78,10 +92,10 @@ class _Run:
         """Run to the end of the settings and leave it as the initial values."""
         mbs = self._mbs
         with (
-            self._kept_settings(),
             user_function(mbs, "PreStep", self._before_step),
             user_function(mbs, "PostStep", self._after_step),
         ):
+            self._choose_accuracy()
             self._modes.begin()
             self._modes.settle(self._reached)
             self._note(before)
@@ -96,36 +110,28 @@ class _Run:
                     self._modes.settle(self._reached)
                     self._note(modes)
 
-    @contextmanager
-    def _kept_settings(self) -> Iterator[None]:
-        options, file, sensors = self._options, self._settings.solution.file, self._settings.solution.sensors
-        alpha, newton = options.generalizedAlpha, options.newton
-        with (
-            kept(options, "startTime", "endTime", "numberOfSteps"),
-            kept(file, "append", "write", "writeInitialValues"),
-            kept(sensors, "append"),
-            kept(alpha, "computeInitialAccelerations"),
-            kept(newton, "useModifiedNewton", "relativeTolerance", "absoluteTolerance", "maxIterations"),
-        ):
-            newton.maxIterations = max(newton.maxIterations, ITERATIONS)
-            if self._planar:
-                # The direction of friction turns too fast for an old Jacobian.
-                newton.useModifiedNewton = False
-                self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
-                friction = max(contact.holding(self._start) for contact in self._planar)
-                newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
-            try:
-                yield
-            finally:
-                self._sensors.restore()
+    def _choose_accuracy(self) -> None:
+        """Change settings of Newton's method as friction requires."""
+        self._options.generalizedAlpha.computeInitialAccelerations = False  # ``dynamics`` finds better ones
+        newton = self._options.newton
+        newton.maxIterations = max(newton.maxIterations, ITERATIONS)
+        if self._planar:
+            # The direction of friction turns too fast for an old Jacobian.
+            newton.useModifiedNewton = False
+            self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
+            friction = max(contact.holding(self._start) for contact in self._planar)
+            newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
         def prepare(mbs: Any, t: float) -> bool:
             for contact in self._planar:
                 contact.start_step(mbs)
+            if t <= self._announced:  # a shorter step replaces one that passed a change
+                return True
+            self._announced = t
             return own(mbs, t)
 
-        return prepare if self._planar else own
+        return prepare
 
     def _after_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
         def look(mbs: Any, t: float) -> bool:
@@ -147,25 +153,26 @@ class _Run:
         *,
         write: bool,
         keep: bool,
-        settles: bool = False,
     ) -> None:
-        """Run to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
-
-        If contacts lie in the plane, Exudyn computes the initial accelerations only for a part that ``settles``.
-        """
+        """Run to ``end`` (s); ``write`` sensors and files, ``keep`` the end."""
+        if end <= self._reached:
+            raise SimulationError(
+                f"steps that resolve how contacts slide fell to zero at t = {self._reached:.9g} s: use smaller "
+                "steps, or give the contacts a regularisation"
+            )
         options, solution = self._options, self._settings.solution
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
         self._sensors.switch(write)
         solution.file.write = write and self._writes_file
+        whole = end - self._reached > (1.0 - ON_GRID) * self._step
         if self._planar:
-            options.generalizedAlpha.computeInitialAccelerations = settles
             small = (
                 any(contact.free_to_slide for contact in self._planar) and self._slides.longest < self._step
             )
             options.newton.relativeTolerance = self._tolerances[not small]
         self._look = look
         with starting_rates(self._mbs, self._reached):
-            self._mbs.SolveDynamic(self._settings, self._solver, keep)
+            self._mbs.SolveDynamic(self._settings, self._solver if whole else SHORT, keep)
         if write:
             solution.file.append = solution.sensors.append = True
 
@@ -190,6 +197,9 @@ class _Run:
         def look(t: float) -> bool:
             nonlocal margins, passed
             if t == start:
+                data.SetAECoordinates(
+                    data.GetAECoordinates(exu.ConfigurationType.Initial)
+                )  # sensors show them
                 self._accelerations = data.GetODE2Coordinates_tt()
                 return True
             now = self._modes.margins(t)
@@ -199,8 +209,7 @@ class _Run:
                 self._take_back()
                 return False
             margins = now
-            if self._planar:
-                self._accelerations = data.GetODE2Coordinates_tt()
+            self._accelerations = data.GetODE2Coordinates_tt()
             self._sensors.switch(self._sensors.is_due(t) or t >= self._end - ON_GRID * self._step)
             return True
 
@@ -212,17 +221,9 @@ class _Run:
         data = self._mbs.systemData
         state = data.GetSystemState(exu.ConfigurationType.StartOfStep)
         data.SetSystemState(state, exu.ConfigurationType.Current)
-        if self._planar:  # Exudyn would compute the accelerations again
-            data.SetODE2Coordinates_tt(self._accelerations)
+        data.SetODE2Coordinates_tt(self._accelerations)
         data.SetTime(self._reached)
         self._sensors.switch(False)
-
-    def _at_start(self, look: Callable[[float], None]) -> None:
-        def end(t: float) -> bool:
-            look(t)
-            return False
-
-        self._part(self._reached + self._step, 1, end, write=False, keep=False, settles=True)
 
     def _try(self, t: float) -> FloatArray:
         found = np.empty(0)
@@ -240,32 +241,41 @@ class _Run:
     def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
-        The Illinois method finds it (Dowell & Jarratt, BIT 11 (1971) 168).
+        The secant through the two latest points finds it, or the Illinois method (Dowell & Jarratt, BIT 11 (1971)
+        168) within the interval.
         """
         low, (above, below) = self._reached, margins
-        tolerance = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
-        side = tried = 0
-        while high - low > tolerance:
-            ended, tried = below < 0.0, tried + 1
-            rest = np.maximum(above[ended], 0.0)
-            share = 0.5 if tried % 4 == 0 else np.min(rest / (rest - below[ended]))
-            t = min(max(low + share * (high - low), low + tolerance / 2.0), high - tolerance / 2.0)
+        before: _Point = low, above
+        latest: _Point = high, below
+        soon = SOON * self._step
+        least, large = max(LOCATED * self._step, 4.0 * np.spacing(abs(high))), np.abs(below) + np.abs(above)
+        side = 0
+        for tried in range(MOST_CHANGES):
+            ended = below < 0.0
+            secants = [(before, latest), ((low, np.maximum(above, 0.0)), (high, below))]
+            roots = next(
+                (root for root in (_roots(*pair, ended) for pair in secants) if low < root.min() < high),
+                np.where(ended, low, np.inf),
+            )
+            t = float(roots.min()) if tried % 4 < 3 else (low + high) / 2.0
+            at_once = tried == 0 and t - low <= least
+            t = min(max(t, low) + least / 2.0, high - least / 2.0)
+            first = int(roots.argmin())
+            is_root = abs(t - latest[0]) <= soon and abs(latest[1][first]) <= SMALL * large[first]
+            if is_root or at_once or high - low <= least:
+                break
             now = self._try(t)
+            before, latest = latest, (t, now)
             if (now < 0.0).any():
                 high, below, above, side = t, now, above if side <= 0 else above / 2.0, 1
             else:
                 low, above, below, side = t, now, below if side >= 0 else below / 2.0, -1
-
-        self._step_to(high)
-        leaving = [contact for contact, margin in zip(self._contacts, below, strict=True) if margin < 0.0]
-        following = [contact.following(self._mbs, high) for contact in leaving]
-        self._modes.survey(high)
-        released = False  # ``settle`` decides about others that share its load
-        for contact, mode in zip(leaving, following, strict=True):
-            shares = isinstance(contact, PlanarContact) and mode != Mode.OPEN
-            if not (shares and released):
-                self._modes.leave(high, contact, mode)
-            released |= shares
+        if not at_once:
+            t = high if high - low <= least else t
+            self._step_to(t)
+        now = np.array(self._modes.margins(self._reached))
+        ends = (now < 0.0) | (roots - t <= least)
+        self._modes.end(self._reached, [self._contacts[i] for i in np.flatnonzero(ends)])
 
     def _stop(self) -> None:
         """Step under constant friction until contacts in the plane rest, and lock them."""
@@ -284,7 +294,7 @@ class _Run:
                     contact.planar.frozen = False
         self._modes.survey(self._reached)
         for contact, _ in resting:
-            self._modes.enter(contact, Mode.LOCKED)
+            self._modes.enter(self._reached, contact, Mode.LOCKED)
 
     def _step_to(self, t: float) -> None:
         self._part(t, 1, lambda time: True, write=False, keep=True)
@@ -295,9 +305,37 @@ class _Run:
             after = contact.stick.visible_mode
             if after != mode:
                 self.changes.append(ModeChange(self._reached, contact.item, mode, after, contact.stick.point))
-        latest = self.changes[-MOST_CHANGES:]
-        if len(latest) == MOST_CHANGES and self._reached - latest[0].time < ON_GRID * self._step:
+        self._settled = [*self._settled[1 - MOST_CHANGES :], self._reached]
+        if len(self._settled) == MOST_CHANGES and self._reached - self._settled[0] < ON_GRID * self._step:
             raise SimulationError(
                 f"friction contacts changed their modes {MOST_CHANGES} times at t = {self._reached:.9g} s; "
                 "contacts between the same bodies may hold each other"
             )
+
+
+def _roots(first: _Point, second: _Point, ended: NDArray[Any]) -> NDArray[Any]:
+    """Return the times (s) where lines through two margins vanish, infinite unless the mode has ``ended``."""
+    (before, above), (after, below) = first, second
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(ended, after - below * (after - before) / (below - above), np.inf)
+
+
+class _SensorRows:
+    """Switches the rows of sensors on for the steps that need one; each part of a run would restart the period."""
+
+    def __init__(self, settings: Any, start: float, step: float) -> None:
+        self._settings, self._next, self._step = settings, start, step
+        self._wanted, self._period = settings.active, settings.writePeriod
+        settings.writePeriod = 0.0
+
+    def switch(self, on: bool) -> None:
+        """Switch rows on or off from the next step on, if the user wants any."""
+        self._settings.active = self._wanted and on
+
+    def is_due(self, t: float) -> bool:
+        """Return whether a row is due at the time t (s); if so, advance to the next one."""
+        if t < self._next - ON_GRID * self._step:
+            return False
+        period = max(self._period, self._step)
+        self._next += period * (1 + math.floor((t - self._next) / period + ON_GRID))
+        return True

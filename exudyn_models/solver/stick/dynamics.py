@@ -1,0 +1,134 @@
+"""Equations of motion of an assembled model at its present state.
+
+The accelerations a and constraint forces λ satisfy M·a + Jᵀ·λ = h and J·a = c. Here c contains prescribed motions and
+the rate of J, which Exudyn's own initial accelerations neglect: TrapezoidalIndex2 would carry that error from step to
+step, as forces that alternate.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from exudyn_models.solver.starting_rates import initialised_solver
+from reference_model.systems import FloatArray
+
+DIFFERENCE = 1e-2
+"""Share of a step between the times of a forward difference of third order; later times see no kink before them."""
+
+SINGULAR = 1e10
+"""Largest element of the inverse of scaled equations whose constraints are independent."""
+
+KEPT = 8
+"""Number of inverses to keep; rotors need only one for each set of constraints."""
+
+
+class Dynamics:
+    """Equations of motion of a model in a run with steps of ``step`` (s).
+
+    ``evaluate`` stores the mass matrix M, shape (n, n), the gradients J of all active constraints, shape (m, n), the
+    rates c that they prescribe, shape (m,), and the inverse of the equations, shape (n + m, n + m).
+    """
+
+    def __init__(self, mbs: Any, t: float, step: float) -> None:
+        self._mbs, self._data, self.difference = mbs, mbs.systemData, DIFFERENCE * step
+        with initialised_solver(mbs, t) as solver:
+            self._solver = solver
+        self._size, self._count = self._data.ODE2Size(), self._data.AEsize()
+        self._rotations = [
+            (self._data.GetNodeLTGODE2(node)[3:6], mbs.GetNode(node)["referenceCoordinates"][3:])
+            for node in range(self._data.NumberOfNodes())
+            if mbs.GetNode(node)["nodeType"] == "RigidBodyRotVecLG"
+        ]
+        self.mass = self.inverse = np.empty((0, 0))
+        self._inverses: dict[tuple[bytes, bytes], FloatArray] = {}
+        self.gradients, self.rates = np.empty((0, self._size)), np.empty(0)
+
+    def evaluate(self, t: float) -> None:
+        """Evaluate M, J, c and the inverse at the present state and the time t (s)."""
+        data, size, solver = self._data, self._size, self._solver
+        data.SetTime(t)
+        solver.ComputeMassMatrix(self._mbs)
+        self.mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
+        if self._count:
+            solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
+            solver.ComputeJacobianAE(self._mbs, 1.0, 1.0, 1.0)
+            self.gradients = np.array(solver.GetSystemJacobian())[-self._count :, :size]
+            self.rates = self._prescribed_rates(t)
+        key = self.mass.tobytes(), self.gradients.tobytes()
+        if key not in self._inverses:
+            if len(self._inverses) == KEPT:
+                self._inverses.clear()
+            self._inverses[key] = inverse_of(self.mass, self.gradients)
+        self.inverse = self._inverses[key]
+
+    def _prescribed_rates(self, t: float) -> FloatArray:
+        """Return c, from the slips of all constraints a little later at the present velocities."""
+        data = self._data
+        q, velocities = data.GetODE2Coordinates(), self._coordinate_rates()
+        slips = []
+        for i in range(4):
+            data.SetODE2Coordinates(q + i * self.difference * velocities)
+            data.SetTime(t + i * self.difference)
+            self._solver.ComputeAlgebraicEquations(self._mbs, True)
+            slips.append(np.array(self._solver.GetSystemResidual())[-self._count :])
+        data.SetODE2Coordinates(q)
+        data.SetTime(t)
+        rates = np.array([11.0, -18.0, 9.0, -2.0]) @ np.array(slips) / (6.0 * self.difference)
+        return np.where(self.gradients.any(axis=1), rates, 0.0)
+
+    def _coordinate_rates(self) -> FloatArray:
+        """Return the derivatives of the coordinates; those of rotation vectors v are not the velocities ω.
+
+        v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
+        """
+        q, rates = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
+        for places, reference in self._rotations:
+            vector, spin = q[places] + reference, rates[places]
+            angle, once = np.linalg.norm(vector), np.cross(vector, spin)
+            factor = (1.0 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2 if angle > 1e-3 else 1.0 / 12.0
+            rates[places] = spin + 0.5 * once + factor * np.cross(vector, once)
+        return np.asarray(rates)
+
+    def forces(self) -> FloatArray:
+        """Return h, shape (n,), at the present state, constraint forces and time."""
+        self._solver.ComputeODE2RHS(self._mbs)
+        return np.array(self._solver.GetSystemResidual())[: self._size]
+
+    def solution(self, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return accelerations, shape (n,), and constraint forces, shape (m,), under generalised ``forces``."""
+        found = self.inverse @ np.concatenate((forces, self.rates))
+        return found[: self._size], found[self._size :]
+
+    def store(
+        self, accelerations: FloatArray, constraints: FloatArray, configurations: Sequence[Any]
+    ) -> None:
+        """Take accelerations and constraint forces as the values of ``configurations``."""
+        for configuration in configurations:
+            self._data.SetODE2Coordinates_tt(accelerations, configuration)
+            self._data.SetAECoordinates(constraints, configuration)
+
+
+def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
+    """Return the inverse of [[M, Jᵀ], [J, 0]]; constraints without a gradient have no force.
+
+    If constraints depend on each other, it is the pseudoinverse of the scaled equations, whose forces are smallest.
+    """
+    size, count = len(mass), len(gradients)
+    masses = np.diag(mass)
+    light = np.min(masses, where=masses > 0.0, initial=np.inf)
+    scale = np.ones(size + count)
+    scale[:size] = 1.0 / np.sqrt(np.where(masses > 0.0, masses, light))
+    lengths = np.linalg.norm(gradients * scale[:size], axis=1)
+    active = lengths > 0.0
+    scale[size:][active] = 1.0 / lengths[active]
+    system = np.diag(np.concatenate((np.zeros(size), ~active)))
+    system[:size, :size], system[size:, :size], system[:size, size:] = mass, gradients, gradients.T
+    system *= scale[:, None] * scale
+    try:
+        inverse = np.linalg.inv(system)
+    except np.linalg.LinAlgError:
+        inverse = np.full((1, 1), np.inf)
+    if not np.abs(inverse).max(initial=0.0) < SINGULAR:
+        inverse = np.linalg.pinv(system, rcond=1.0 / SINGULAR, hermitian=True)
+    return np.asarray(scale[:, None] * inverse * scale)
