@@ -207,12 +207,12 @@ def shown(value: Any) -> str:
     return " ".join(reprlib.repr(value).split())
 
 
-def finite_numbers(name: str, values: Any) -> FloatArray:
-    """Return ``values``, a number or an array of any shape, as an array of floats.
+def real_numbers(name: str, values: Any) -> FloatArray:
+    """Return ``values``, a number or an array of any shape, as an array of floats, which may be infinite or NaN.
 
     Numbers are integers and floats of Python or NumPy, also within lists and in objects that convert themselves to
-    an array, such as a series of pandas. Raises ``ValueError`` for everything else (truth values, text, dates,
-    complex numbers, masked elements, numbers with a unit, rows of unequal length), and unless all are finite.
+    an array, such as a series of pandas. Raises ``ValueError`` for everything else: truth values, text, dates,
+    complex numbers, masked elements, numbers with a unit, and rows of unequal length.
     """
     said = f"{name} = {shown(values)}"
     if np.ma.is_masked(values):
@@ -227,17 +227,22 @@ def finite_numbers(name: str, values: Any) -> FloatArray:
         rule = "contain only numbers, in rows of equal length" if array.ndim else "be a number"
         raise ValueError(f"{said}: it must {rule}")
     try:
-        result = np.array(array, dtype=float, order="C")
+        return np.array(array, dtype=float, order="C")
     except OverflowError:  # an integer larger than any float
         raise ValueError(f"{said}: it must be finite, at most {np.finfo(float).max:.2g} in size") from None
+
+
+_NUMBERS, _NO_NUMBERS = (int, float, np.integer, np.floating), (bool, np.timedelta64)
+
+
+def finite_numbers(name: str, values: Any) -> FloatArray:
+    """Return ``values`` as ``real_numbers`` does; raise ``ValueError`` unless all are finite."""
+    result = real_numbers(name, values)
     if not np.all(np.isfinite(result)):
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
         where = f"[{', '.join(map(str, place))}]" if place else ""
         raise ValueError(f"{name}{where} = {result[place]}: it must be finite")
     return result
-
-
-_NUMBERS, _NO_NUMBERS = (int, float, np.integer, np.floating), (bool, np.timedelta64)
 
 
 def finite_number(name: str, value: Any) -> float:

@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Enum
 from functools import cached_property
-from typing import Any, Literal, get_args
+from typing import Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,6 +65,9 @@ class Grade(Enum):
 GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 """Largest relative error of each grade."""
 
+
+NEGLIGIBLE = GRADES[Grade.EXACT]
+"""Largest relative difference that does not matter in a study, whose claims must fail for small faults."""
 
 DOUBT = 3.0
 """Uncertainty factor of an error estimate beyond the resolution, because two coarse runs show little about errors."""
@@ -245,6 +248,14 @@ class Claim:
         with np.errstate(divide="ignore", invalid="ignore"):
             relative = np.where(errors == 0.0, 0.0, errors / size)
         return float(np.max(np.nan_to_num(relative, nan=math.inf), initial=0.0))
+
+    @property
+    def strict(self) -> Self:
+        """The same claim, in which a difference above ``NEGLIGIBLE`` matters even within the resolution."""
+        sizes = self._size()
+        least = NEGLIGIBLE * float(np.min(sizes, where=sizes > 0.0, initial=math.inf))
+        negligible = min(self.budget.negligible, least)
+        return replace(self, budget=replace(self.budget, negligible=negligible))
 
     def _size(self) -> FloatArray:
         if self.size is not None:

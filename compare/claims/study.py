@@ -376,7 +376,7 @@ class Study:
             identity=declared.identity(self.name, case),
             size=None if measured.size is None else np.asarray(measured.size),
             axes=measured.axes,
-        )
+        ).strict
 
     def sentences(self) -> dict[str, str]:
         """Return the sentences about engines with their selectors in ``only``."""

@@ -21,7 +21,7 @@ from compare.output.figures import (
     paper_style,
     saved,
 )
-from compare.sweep.compute.run import BRANCHES, CURVES, RESULT
+from compare.sweep.compute.run import RESULT, theory_of
 from compare.sweep.files import Files
 from compare.sweep.plan import Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.quantities import symbol, units
@@ -59,7 +59,7 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
     """
     result, contents = store.finished(RESULT), {}
     with paper_style():
-        drawn = figures(store.plan, result, store.get(CURVES) or store.get(BRANCHES))
+        drawn = figures(store.plan, result, next(map(store.get, theory_of(store.plan)), None))
     for name, figure in drawn.items():
         for suffix, content in zip((".svg", ".png"), saved(figure), strict=True):
             contents[f"{name}{suffix}"] = content

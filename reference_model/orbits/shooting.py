@@ -188,6 +188,7 @@ class Orbit:
         """Time mean of x and y in m, shape (2,), by the trapezoidal rule over the samples of a period.
 
         The error is below a millionth of the orbit's size, and at most rounding for a smooth orbit with many samples.
+        For a coarse engine it is below the root of the tolerance, because the samples show single steps.
         Raises ``ValueError`` if there are too few samples, or if the orbit recurs only after a rotation.
         """
         if self.turn != 0.0:
@@ -197,7 +198,8 @@ class Orbit:
         x, y = self.trajectory.states[:-1, :2].T
         size = np.abs(np.fft.fft(x + 1j * y))
         high = np.abs(np.fft.fftfreq(len(x))) >= 1.0 / 3.0
-        if len(x) < 3 or np.max(size[high]) > UNRESOLVED * np.max(size):
+        rough = max(UNRESOLVED, math.sqrt(self.problem.tolerance), ABOVE_NOISE * self.problem.precision)
+        if len(x) < 3 or np.max(size[high]) > rough * np.max(size):
             raise ValueError(f"samples = {len(x)}: too few for the mean of this orbit; increase samples")
         return np.array([x.mean(), y.mean()])
 

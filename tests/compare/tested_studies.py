@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import wrong_parts as wrong
@@ -243,6 +244,9 @@ FROZEN = Tested(
         "radial stiffness and inner radius 0.001 % off": Patched(
             wrong.bench_off(radial_stiffness=1.0 + 1e-5, inner_radius=1.0 + 1e-5), only=ON_THE_BENCH
         ),
+        "radial stiffness and inner radius 0.1 % off": Patched(
+            wrong.bench_off(radial_stiffness=1.001, inner_radius=1.001), only=("slips",)
+        ),
         "radial damping off by 1e-9": Patched(
             wrong.radial_damping_off(1.0 + 1e-9), only=("loses_stability",)
         ),
@@ -325,10 +329,10 @@ def short_motions_of_the_disc():
     return {name: replace(motion, until=min(motion.until, 20.0)) for name, motion in motions}
 
 
-def gaining(system, initial_state, times, *, tolerance=1e-9):
-    """Return a motion whose kinetic energy grows by 1e-6 of its value per second."""
+def gaining(system, initial_state, times, *, tolerance=1e-9, rate=1e-6):
+    """Return a motion whose kinetic energy grows by ``rate`` of its value per second."""
     trajectory = simulate(system, initial_state, times, tolerance=tolerance)
-    growth = np.exp(0.5e-6 * (trajectory.times - trajectory.times[0]))[:, np.newaxis]
+    growth = np.exp(0.5 * rate * (trajectory.times - trajectory.times[0]))[:, np.newaxis]
     places, velocities = np.split(trajectory.states, 2, axis=1)
     return replace(trajectory, states=np.hstack((places, growth * velocities)))
 
@@ -336,7 +340,10 @@ def gaining(system, initial_state, times, *, tolerance=1e-9):
 POWER_BALANCE = Tested(
     STUDY["power-balance"],
     few={"pin": {"motions": short_motions_of_the_pin}, "disc": {"motions": short_motions_of_the_disc}},
-    small={"energy grows by 1e-6 in a second": Engine("gaining", gaining, EVERY_KIND)},
+    small={
+        "energy grows by 1e-6 in a second": Engine("gaining", gaining, EVERY_KIND),
+        "energy grows by 1 % in a second": Engine("gaining more", partial(gaining, rate=1e-2), EVERY_KIND),
+    },
 )
 
 CLUTCH_SCALE = Tested(STUDY["clutch-scale"], few={"shares": {"starts": 200}})

@@ -37,14 +37,15 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
     rounds, grid = simulated(store, executor, progress)
     if store.get(CHECK) is None:
         store.put(CHECK, _checked(store, rounds, executor, progress))
-    for name, dataset in _theory(store.plan).items():
+    for name, dataset in theory_of(store.plan).items():
         if store.get(name) is None:
             store.put(name, dataset())
     if store.get(RESULT) is None:
         _label(store, rounds, grid, executor, progress)
 
 
-def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
+def theory_of(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
+    """Return the functions that compute the theory of a plan, by the group that stores it."""
     if isinstance(plan, Map):
         return {CURVES: lambda: curves_of(plan)}
     return {BRANCHES: lambda: branches_of(plan)} if isinstance(plan, Continuation) else {}
@@ -52,7 +53,7 @@ def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
 
 def finished(store: SweepStore) -> bool:
     """Return whether the sweep is complete; add damaged parts to ``store.broken``."""
-    groups = (CHECK, RESULT, *_theory(store.plan))
+    groups = (CHECK, RESULT, *theory_of(store.plan))
     missing = [name for name in groups if store.get(name) is None]
     plan, ends = store.plan.rounds(), None
     with suppress(StopIteration):

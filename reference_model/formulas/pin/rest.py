@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.support import Support, require_linear_support
-from reference_model.systems import FloatArray, PinOnDisc, finite_numbers, require_system
+from reference_model.systems import FloatArray, PinOnDisc, real_numbers, require_system
 
 
 def turning_direction(pin: PinOnDisc) -> float:
@@ -57,7 +57,7 @@ def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArra
 
     ``x`` and ``y`` in m may be numbers or arrays of one shape.
     """
-    x, y = finite_numbers("x", x), finite_numbers("y", y)
+    x, y = real_numbers("x", x), real_numbers("y", y)
     residual: FloatArray = (x - pin.offset / 2.0) ** 2 + y**2 - pin.offset**2 / 4.0
     return residual
 
@@ -95,7 +95,7 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
     ``radius`` is the distance A from the axis in m, ``disc_angle`` the angle ωt in rad; both may be arrays.
     """
     require_linear_support(pin)
-    A, angle = finite_numbers("radius", radius), finite_numbers("disc_angle", disc_angle)
+    A, angle = real_numbers("radius", radius), real_numbers("disc_angle", disc_angle)
     C, X0, omega = pin.stiffness, pin.offset, pin.disc_speed
     elastic = C - pin.mass * omega**2
     viscous = pin.damping * omega

@@ -133,15 +133,16 @@ def test_names_of_another_shape_are_rejected(names):
 
 
 def test_a_budget_that_is_too_small_is_named_and_lowers_the_grade():
-    study = study_of("rests")
-    (claim,) = replace_resolution(study, 1e-2).measure(ENGINE).claims
-    assert (claim.verdict, claim.grade) == (Verdict.AGREES, Grade.COARSE)
-    assert claim.note == "Declared. The error budget of 0.001 was too small for the difference of 0.003."
+    study = study_of()
 
+    @study.claim("It whirls {}", resolution=1e-2, each={"a little": 5e-8, "much": 5e-7})
+    def whirls(engine, off):
+        return Measured(predicted=1.0, value=1.0 + off, error=1e-8)
 
-def replace_resolution(study, resolution):
-    study.declared[:] = [replace(one, resolution=resolution) for one in study.declared]
-    return study
+    little, much = study.measure(ENGINE).claims
+    assert (little.verdict, little.grade) == (Verdict.AGREES, Grade.EXACT)
+    assert little.note == "The error budget of 1e-08 was too small for the difference of 5e-08."
+    assert much.verdict is Verdict.DIFFERS  # more than NEGLIGIBLE
 
 
 def test_data_that_cannot_be_drawn_cost_no_verdict():

@@ -14,6 +14,7 @@ from compare.claims.claim import BASES, THEORY, Verdict
 from compare.claims.study import Findings
 from compare.engines import Engine, engines, exudyn, exudyn_native, reference
 from compare.report.matrix import State, evidence_of, matrix
+from compare.report.numbers import unbroken
 from compare.report.page import counted, summary
 from compare.report.write import write_report
 from compare.run.runner import Run, run
@@ -227,7 +228,7 @@ def test_matrix_and_table_show_the_same_number(tmp_path):
     cell = written.rows[0].cells["good"]
     assert (cell.state, cell.number) == (State.AGREES, "±\N{NO-BREAK SPACE}1.0×10⁻⁵ m")
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert page.count(f'<small class="within">{cell.number}</small>') == 2
+    assert page.count(f'<small class="within">{unbroken(cell.number)}</small>') == 2
     assert '<data value="9e-06">' in page
     assert 'largest <data value="2e-05">' in page
     (made,) = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"]

@@ -186,7 +186,7 @@ def _measured(motions: Sequence[Steady], place: slice | int, offset: float, **mo
         predicted=predicted,
         value=[one.found.value[place] for one in motions],
         error=np.max([one.found.error[place] + one.predicted.error[place] for one in motions]),
-        resolution=1e-7 * float(np.max(np.abs(predicted))),
+        resolution=1e-9 * float(np.max(np.abs(predicted))),
         at={"speed in rpm": [one.speed for one in motions]},
         parameters=bench.parameters_of(passenger_car(), without=("offset",), **changed),
         **more,

@@ -115,7 +115,7 @@ def test_a_missing_motion_is_unsupported_not_wrong(change, reason, answer, folde
         (
             with_line(0, "t,x,y,vx"),
             BadFileError,
-            "'t,x,y,vx': it must name t [s], x [m], y [m], vx [m/s], vy [m/s], each once …",
+            "'t,x,y,vx': it must name t [s], x [m], y [m], vx [m/s], vy [m/s], in any order",
         ),
         (with_line(0, "time,x,y,vx,vy"), BadFileError, "'time,x,y,vx,vy': it must name …"),
         (with_line(0, "t [ms],x,y,vx,vy"), BadFileError, "'t [ms],x,y,vx,vy': it must name …"),

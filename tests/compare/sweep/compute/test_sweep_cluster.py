@@ -150,7 +150,7 @@ class Elsewhere(InProcess):
     ("other", "error", "sentence"),
     [
         ("code", OtherCodeError, "a different version of the code or libraries"),
-        ("store", StoreError, "--output must be a shared folder or an object store"),
+        ("store", StoreError, r"--output is not a shared folder or an object store"),
     ],
 )
 def test_a_worker_with_other_code_or_store_writes_nothing(other, error, sentence, tmp_path, monkeypatch):
