@@ -251,7 +251,7 @@ class Claim:
 
     @property
     def strict(self) -> Self:
-        """The same claim, in which a difference above ``NEGLIGIBLE`` matters even within the resolution."""
+        """The same claim, with at most ``NEGLIGIBLE`` of its size as the negligible difference."""
         sizes = self._size()
         least = NEGLIGIBLE * float(np.min(sizes, where=sizes > 0.0, initial=math.inf))
         negligible = min(self.budget.negligible, least)
