@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict
+from compare.claims.claim import DOUBT, THEORY, Basis, Claim, ErrorBudget, Kind, Verdict
 from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
@@ -363,7 +363,12 @@ class Study:
             engine=THEORY if engine is None else engine.name,
             predicted=np.asarray(measured.predicted),
             measured=np.asarray(measured.value),
-            budget=ErrorBudget(measured.error, model=measured.model, resolution=resolution),
+            budget=ErrorBudget(
+                measured.error,
+                model=measured.model,
+                resolution=resolution,
+                doubt=1.0 if engine is None else DOUBT,
+            ),
             parameters=known | dict(measured.parameters),
             source=measured.source or self.source,
             unit=declared.unit,
