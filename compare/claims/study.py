@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from compare.claims.claim import DOUBT, THEORY, Basis, Claim, ErrorBudget, Kind, Verdict
+from compare.claims.claim import DOUBT, GRADES, THEORY, Basis, Claim, ErrorBudget, Grade, Kind, Verdict
 from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
@@ -334,6 +334,11 @@ class Study:
         except NoOrbitError as error:
             if engine is None:
                 raise
+            if error.residual < GRADES[Grade.COARSE]:
+                raise UnsupportedSystemError(
+                    f"{engine.name} comes back to its start within {error.residual:.1e} of the orbit, too "
+                    "inaccurately for shooting; declare its precision, or shorten its step"
+                ) from None
             raise RuntimeError(
                 f"{engine.name} has no periodic motion near that of exact Coulomb friction, so this claim cannot be "
                 f"measured; check its friction law and shorten its step ({str(error).partition(';')[0]})"

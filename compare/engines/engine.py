@@ -190,10 +190,10 @@ class Engine:
         found = looked_at(answer, times)
         if (self.phases and found.phases) or any(phase.kind != "slip" for phase in found.phases):
             return found
-        coarseness = tolerance / USUAL_TOLERANCE
-        if self.step is not None:
-            coarseness = COARSE_STEP * self.step_at(tolerance) / self.step
-        return StatesOnly(found, more, coarseness, self.precision)
+        if self.step is None:
+            return StatesOnly(found, more, tolerance / USUAL_TOLERANCE, self.precision)
+        step = self.step_at(tolerance)
+        return StatesOnly(found, more, COARSE_STEP * step / self.step, self.precision, step)
 
     @property
     def root(self) -> float:

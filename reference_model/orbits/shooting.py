@@ -239,7 +239,11 @@ class Orbit:
 
 
 class NoOrbitError(RuntimeError):
-    """Shooting found no periodic orbit near its guess."""
+    """Shooting found no periodic orbit near its guess; ``residual`` is the relative miss where it stopped."""
+
+    def __init__(self, message: str, residual: float = math.inf) -> None:
+        super().__init__(message)
+        self.residual = residual
 
 
 def shoot(
@@ -282,7 +286,8 @@ def shoot(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
             f"{problem.system.disc_speed:g} rad/s: shooting stopped at a relative residual of {smallest:.1e}; "
             "start from the orbit of a nearby load; if it does not cross "
-            f"y = {unknowns[Y]:g} m, from one that starts elsewhere"
+            f"y = {unknowns[Y]:g} m, from one that starts elsewhere",
+            smallest,
         )
     period, load, turn = (float(value) for value in best[PERIOD:])
     system, state = replace(problem.system, friction_force=load), problem.start(best)

@@ -234,3 +234,13 @@ def test_a_failed_search_for_an_orbit_is_reported_in_terms_of_the_engine():
     study.claim("It whirls", resolution=1.0)(whirls)
     with pytest.raises(RuntimeError, match=r"^exact has no periodic motion near .* residual of 1.1e\+01\)$"):
         study.measure(ENGINE)
+
+
+def test_an_orbit_that_returns_only_roughly_is_not_measured_and_no_failure():
+    def whirls(engine):
+        raise NoOrbitError("no whirl", 2.7e-7)
+
+    study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
+    study.claim("It whirls", resolution=1.0)(whirls)
+    found = study.measure(ENGINE)
+    assert found.gaps["It whirls"].startswith("exact comes back to its start within 2.7e-07 of the orbit")
