@@ -334,7 +334,7 @@ class Study:
         except NoOrbitError as error:
             if engine is None:
                 raise
-            if error.residual < GRADES[Grade.COARSE]:
+            if error.residual < GRADES[Grade.FINE]:
                 raise UnsupportedSystemError(
                     f"{engine.name} comes back to its start within {error.residual:.1e} of the orbit, too "
                     "inaccurately for shooting; declare its precision, or shorten its step"
@@ -361,7 +361,7 @@ class Study:
             raise ValueError(
                 f"claim {declared.sentence!r}: no resolution given; set it in the declaration or in Measured"
             )
-        return Claim(
+        claim = Claim(
             declared.sentence_of(case),
             equation=declared.equation,
             kind=declared.kind,
@@ -386,7 +386,9 @@ class Study:
             identity=declared.identity(self.name, case),
             size=None if measured.size is None else np.asarray(measured.size),
             axes=measured.axes,
-        ).strict
+        )
+        # where the precision of an engine is limited, all within the resolution is negligible
+        return claim if engine is not None and engine.noise > 0.0 else claim.strict
 
     def sentences(self) -> dict[str, str]:
         """Return the sentences about engines with their selectors in ``only``."""

@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import BadTrajectoryError, as_many_as, checked
-from compare.engines.precision import LEAST_PRECISE, USUAL_TOLERANCE, blurred, blurred_start
+from compare.engines.precision import (
+    LEAST_PRECISE,
+    SINGLE,
+    USUAL_TOLERANCE,
+    are_single,
+    blurred,
+    blurred_start,
+)
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
 from compare.output.outside_text import one_line, one_of
@@ -64,7 +71,8 @@ class Engine:
       reference nor start at rest on the master disc.
     - ``nonlinear``: True if it simulates supports that harden or have a stop.
     - ``phases``: True if its trajectories contain the stick phases. Otherwise ``compare.engines.stick`` finds them.
-    - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion.
+    - ``precision``: declared error of its states at any tolerance, relative to the lengths and speeds of the motion,
+      see ``noise``.
     - ``step``: fixed step in s for a tolerance of 1e-9, if any; ``function`` then takes ``step`` in place of
       ``tolerance``.
     - ``order``: order of the error in a fixed step.
@@ -156,6 +164,11 @@ class Engine:
         return found
 
     @property
+    def noise(self) -> float:
+        """The declared precision, or that of single precision if the engine has returned such numbers."""
+        return self.precision or float(self.__dict__.get("_seen_noise", 0.0))
+
+    @property
     def _asked(self) -> Callable[..., Any]:
         return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
@@ -179,9 +192,11 @@ class Engine:
     ) -> Trajectory:
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
-            if self.precision == 0.0:
+            if self.precision == 0.0 and are_single(found.states):
+                object.__setattr__(self, "_seen_noise", SINGLE)
+            if self.noise == 0.0:
                 return found
-            return blurred(found, self.precision, tolerance, np.asarray(initial_state, dtype=float))
+            return blurred(found, self.noise, tolerance, np.asarray(initial_state, dtype=float))
 
         def more(times: FloatArray) -> FloatArray:
             start = self._start(system, initial_state, tolerance)
@@ -191,9 +206,9 @@ class Engine:
         if (self.phases and found.phases) or any(phase.kind != "slip" for phase in found.phases):
             return found
         if self.step is None:
-            return StatesOnly(found, more, tolerance / USUAL_TOLERANCE, self.precision)
+            return StatesOnly(found, more, tolerance / USUAL_TOLERANCE, self.noise)
         step = self.step_at(tolerance)
-        return StatesOnly(found, more, COARSE_STEP * step / self.step, self.precision, step)
+        return StatesOnly(found, more, COARSE_STEP * step / self.step, self.noise, step)
 
     @property
     def root(self) -> float:
