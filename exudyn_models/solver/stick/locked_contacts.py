@@ -9,7 +9,7 @@ import scipy.linalg
 from scipy.optimize import minimize
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
-from exudyn_models.solver.stick.dynamics import Dynamics
+from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
 from exudyn_models.solver.stick.sticking_contacts import (
     PlanarContact,
     StickingContact,
@@ -63,7 +63,7 @@ class LockedContacts:
     def _velocities_of(self, contact: PlanarContact, slip: FloatArray) -> FloatArray:
         """Return velocities that give only this contact a slip; heavy bodies move least."""
         others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
-        held, weights = self._held_rows(others), self._mobilities()
+        held, weights = self._held_rows(others), np.sqrt(mobilities(self._mass))
         resisted = slice(3 if contact.planar.mean_radius > 0.0 else 2)  # a pin may spin
         rows = np.vstack([held, contact.slip_rows(self._mbs)[resisted]]) * weights
         wanted = np.concatenate([np.zeros(len(held)), slip[resisted]])
@@ -112,11 +112,6 @@ class LockedContacts:
         for contact, change in zip(resting, moved.reshape(-1, 3), strict=True):
             contact.planar.taken_over = contact.planar.taken_over + change
         return True
-
-    def _mobilities(self) -> FloatArray:
-        masses = np.diag(self._mass)
-        light = np.min(masses, where=masses > 0.0, initial=np.inf)
-        return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))
 
 
 def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], size: int) -> FloatArray:

@@ -17,7 +17,7 @@ from exudyn_models.solver.stick.complementarity import (
     independent_rows,
     rest_or_slip,
 )
-from exudyn_models.solver.stick.dynamics import Dynamics
+from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
 from exudyn_models.solver.stick.sticking_contacts import STILL, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -55,8 +55,7 @@ class _Slips:
         self._bias = np.concatenate([contact.bias(mbs) for contact in contacts])
         self._to_velocities = dynamics.inverse[:size, :size] @ self.rows.T
         self.to_rates = self.rows @ self._to_velocities
-        masses = np.diag(dynamics.mass)
-        lengths = self.rows**2 @ np.where(masses > 0.0, 1.0 / np.where(masses > 0.0, masses, 1.0), 0.0)
+        lengths = self.rows**2 @ mobilities(dynamics.mass)
         self.prescribed = np.diag(self.to_rates) <= DEPENDENT * lengths
         self.to_rates[self.prescribed] = self.to_rates[:, self.prescribed] = 0.0
 
@@ -218,7 +217,7 @@ class RestingAxes:
             slips.rates(accelerations)[still],
             slips.noise(accelerations)[still],
             static - shrunk,
-            static / ratios,
+            np.minimum(static - shrunk, static / ratios),
         )
         for i, direction in zip(still, directions, strict=True):
             if direction != 0.0:

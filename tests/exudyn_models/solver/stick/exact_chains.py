@@ -52,9 +52,9 @@ class Chain:
             found.append((rotation, centre, spin, turn, push, np.array(axes), np.array(joints)))
         return found
 
-    def solve(self, t, q, v, modes):
-        """Return the accelerations (rad/s²) and the moments of the brakes (N m)."""
-        count = len(q)
+    def solve(self, t, q, v, modes, slides=None):
+        """Return the accelerations (rad/s²) and the moments of the brakes (N m), which slip with ``slides`` (N m)."""
+        count, slides = len(q), self.slides if slides is None else slides
         masses, moments = np.zeros((count, count)), np.array([float(motor(t)) for motor in self.motors])
         for k, (rotation, centre, spin, turn, push, axes, joints) in enumerate(self.bodies(q, v)):
             turns, moves = np.zeros((3, count)), np.zeros((3, count))
@@ -63,31 +63,34 @@ class Chain:
             masses += self.masses[k] * moves.T @ moves + turns.T @ inertia @ turns
             moments -= moves.T @ (self.masses[k] * push)
             moments -= turns.T @ (inertia @ turn + np.cross(spin, inertia @ spin))
-        brakes = np.where(np.abs(modes) == 1, -modes * self.slides, 0.0)
+        brakes = np.where(np.abs(modes) == 1, -modes * slides, 0.0)
         rates, free = np.zeros(count), modes != 0
         rates[free] = np.linalg.solve(masses[np.ix_(free, free)], (moments + brakes)[free])
         brakes[~free] = (masses @ rates - moments)[~free]
         return rates, brakes
 
     def choice(self, t, q, v, modes, rests):
-        """Choose modes of the brakes ``rests``: static limits first, then sliding ones for all that slip."""
+        """Choose modes of the brakes ``rests``: those slip that static friction cannot hold, as few as possible.
+
+        Static friction acts on all first, and sliding friction on those that then slip, until no other slips.
+        """
         slipped = set()
         while True:
-            limits = np.where(np.isin(np.arange(len(q)), list(slipped)), self.slides, self.statics)
-            found = self._consistent(t, q, v, modes, rests, limits + ROUNDING)
-            new = {k for k in rests if found[k] != 0} - slipped
+            limits = np.where(np.isin(np.arange(len(q)), [*set(rests) - slipped]), self.statics, self.slides)
+            found = self._consistent(t, q, v, modes, rests, rests, limits, limits)
+            new = {int(k) for k in rests if found[k] != 0} - slipped
             if not new:
-                return found
+                return self._consistent(t, q, v, modes, rests, sorted(slipped), self.statics, self.slides)
             slipped |= new
 
-    def _consistent(self, t, q, v, modes, rests, limits):
-        for count in range(len(rests) + 1):
-            for moving in map(list, combinations(rests, count)):
+    def _consistent(self, t, q, v, modes, rests, may_slip, limits, slides):
+        for count in range(len(may_slip) + 1):
+            for moving in map(list, combinations(may_slip, count)):
                 for signs in product((1, -1), repeat=count):
                     tried = modes.copy()
                     tried[rests], tried[moving] = 0, signs
-                    rates, brakes = self.solve(t, q, v, tried)
-                    if (rates[moving] * signs > ROUNDING).all() and (np.abs(brakes) <= limits)[
+                    rates, brakes = self.solve(t, q, v, tried, slides)
+                    if (rates[moving] * signs > ROUNDING).all() and (np.abs(brakes) <= limits + ROUNDING)[
                         tried == 0
                     ].all():
                         return tried
