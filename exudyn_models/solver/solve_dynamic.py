@@ -160,7 +160,7 @@ def _solve(
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()
             if contacts:
-                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
+                changes = run_switching(mbs, simulationSettings, contacts, updateInitialValues, modes)
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:

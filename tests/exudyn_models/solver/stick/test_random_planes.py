@@ -144,4 +144,4 @@ def check(seed, solver):
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_pins_and_rings_on_prescribed_planes_stop_and_slide_at_the_exact_times(solver):
-    assert sum(check(seed, solver) for seed in (0, 1, 4, 6, 7, 26)) > 8
+    assert sum(check(seed, solver) for seed in (0, 1, 4, 7, 20, 26, 97)) > 9
