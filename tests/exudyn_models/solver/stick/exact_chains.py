@@ -117,7 +117,7 @@ class Chain:
         while True:
             brakes = [k for k in range(count) if modes[k] != NONE]
             steps = {
-                "max_step": 5e-3,
+                "max_step": 1e-2,
                 "first_step": min(1e-5, (end - time) / 2.0),
                 "rtol": 1e-10,
                 "atol": 1e-12,
