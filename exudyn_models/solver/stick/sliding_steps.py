@@ -20,11 +20,8 @@ ON_GRID = 1e-9
 APPROACH = 0.9
 """Largest share of the slip that its acceleration could remove in a step."""
 
-TURN = 0.05
-"""Largest change of the direction of friction in a shortened step."""
-
-FULL_TURN = 0.3
-"""Largest change of this direction in a step of full length."""
+TURN = 0.03
+"""Largest change of the direction of friction in a step."""
 
 
 class SlidingSteps:
@@ -57,7 +54,6 @@ class SlidingSteps:
         """Return whether a ``step`` (s) was short enough, and choose the next one."""
         if not self._contacts:
             return True
-        shortened = step < (1.0 - ON_GRID) * self._step
         before, by_slip = self._directions, self._by_slip
         self.survey()
         turned = max(
@@ -68,7 +64,7 @@ class SlidingSteps:
             ),
             default=0.0,
         )
-        if turned > (TURN if shortened else FULL_TURN):
+        if turned > TURN:
             self._directions, self._by_slip, self.rests = before, by_slip, False
             self._growing = step / 2.0
             return False

@@ -31,8 +31,8 @@ SOON = 1e-6
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""
 
-SHORT = exu.DynamicSolverType.TrapezoidalIndex2
-"""Solver of shorter steps; GeneralizedAlpha would divide errors of positions by their square."""
+SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
+"""Solver of all steps; constraint forces of GeneralizedAlpha contain errors of positions over the squared step."""
 
 FORCES = 1e-12
 """Residual of Newton's method for contacts in the plane, relative to its first value or to the friction.
@@ -51,18 +51,17 @@ _Point = tuple[float, FloatArray]
 def run_switching(
     mbs: Any,
     settings: Any,
-    solver: Any,
     contacts: list[StickingContact],
     update_initial_values: bool,
     before: Sequence[Mode] = (),
 ) -> list[ModeChange]:
-    """Run an implicit ``solver``; return the changes of modes of the ``contacts``, which had the modes ``before``.
+    """Run TrapezoidalIndex2; return the changes of modes of the ``contacts``, which had the modes ``before``.
 
     Raises ``SimulationError`` if the modes change without end at one time.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     state = data.GetSystemState(initial)
-    run = _Run(mbs, copy.copy(settings), solver, contacts)
+    run = _Run(mbs, copy.copy(settings), contacts)
     try:
         run.run(before)
     finally:
@@ -72,8 +71,8 @@ def run_switching(
 
 
 class _Run:
-    def __init__(self, mbs: Any, settings: Any, solver: Any, contacts: list[StickingContact]) -> None:
-        self._mbs, self._settings, self._solver, self._contacts = mbs, settings, solver, contacts
+    def __init__(self, mbs: Any, settings: Any, contacts: list[StickingContact]) -> None:
+        self._mbs, self._settings, self._contacts = mbs, settings, contacts
         self._options = options = settings.timeIntegration
         self._start, self._end, self._steps = options.startTime, options.endTime, options.numberOfSteps
         self._step = (self._end - self._start) / self._steps
@@ -164,7 +163,6 @@ class _Run:
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
         self._sensors.switch(write)
         solution.file.write = write and self._writes_file
-        whole = end - self._reached > (1.0 - ON_GRID) * self._step
         if self._planar:
             small = (
                 any(contact.free_to_slide for contact in self._planar) and self._slides.longest < self._step
@@ -172,7 +170,7 @@ class _Run:
             options.newton.relativeTolerance = self._tolerances[not small]
         self._look = look
         with starting_rates(self._mbs, self._reached):
-            self._mbs.SolveDynamic(self._settings, self._solver if whole else SHORT, keep)
+            self._mbs.SolveDynamic(self._settings, SOLVER, keep)
         if write:
             solution.file.append = solution.sensors.append = True
 
