@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.solver.stick.slip_motion import SlipMotion
+from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact
 from reference_model.systems import FloatArray
 
@@ -49,6 +49,11 @@ class SlidingSteps:
     def stops(self, contact: PlanarContact, motion: SlipMotion) -> bool:
         """Return whether the shortest step might end without slip."""
         return motion.rests_within(contact.rest_share * self._step / APPROACH)
+
+    def beyond(self, motion: SlipMotion) -> float:
+        """Return the time (s) after a rest in which the slip grows until its direction is resolved."""
+        shortest = PlanarContact.rest_share * self._step
+        return max(shortest, 2.0 * RESOLVED * motion.largest_term / motion.rate_potential)
 
     def resolves(self, step: float) -> bool:
         """Return whether a ``step`` (s) was short enough, and choose the next one."""

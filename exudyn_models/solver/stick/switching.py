@@ -276,23 +276,27 @@ class _Run:
         self._modes.end(self._reached, [self._contacts[i] for i in np.flatnonzero(ends)])
 
     def _stop(self) -> None:
-        """Step under constant friction until contacts in the plane rest, and lock them."""
+        """Step under constant friction until contacts in the plane rest, and lock them.
+
+        A slip that a prescribed motion reverses passes through zero, and is resolved again after the step.
+        """
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
-        resting = [
-            (contact, motion.remaining) for contact, motion in motions if self._slides.stops(contact, motion)
-        ]
-        time = min(remaining for _, remaining in resting)
+        stopping = [(contact, motion) for contact, motion in motions if self._slides.stops(contact, motion)]
+        passing = [motion for contact, motion in stopping if contact.cannot_rest(motion)]
+        time = min(motion.remaining for _, motion in stopping)
+        time += max((self._slides.beyond(motion) for motion in passing), default=0.0)
         if self._reached + time > self._reached:
-            for contact, _ in resting:
+            for contact, _ in stopping:
                 contact.planar.frozen = True
             try:
                 self._step_to(self._reached + time)
             finally:
-                for contact, _ in resting:
+                for contact, _ in stopping:
                     contact.planar.frozen = False
         self._modes.survey(self._reached)
-        for contact, _ in resting:
-            self._modes.enter(self._reached, contact, Mode.LOCKED)
+        for contact, motion in stopping:
+            if not any(motion is one for one in passing):
+                self._modes.enter(self._reached, contact, Mode.LOCKED)
 
     def _step_to(self, t: float) -> None:
         self._part(t, 1, lambda time: True, write=False, keep=True)
