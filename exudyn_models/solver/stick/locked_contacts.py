@@ -10,7 +10,10 @@ from scipy.optimize import minimize
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
 from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
+from exudyn_models.solver.stick.slip_motion import SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import (
+    AHEAD,
+    STILL,
     PlanarContact,
     StickingContact,
     joints_of,
@@ -70,6 +73,13 @@ class LockedContacts:
                 contact.enter(self._mbs, contact.mode)
             if contact.mode == Mode.LOCKED:
                 locked.append(contact)
+
+    def passes(self, contact: PlanarContact, motion: SlipMotion) -> bool:
+        """Return whether joints and prescribed motions accelerate a slip, so it may only pass through zero."""
+        locked = [one for one in self._contacts if one.mode == Mode.LOCKED and one not in self._planar]
+        slips = contact.slip_rows(self._mbs) @ _null_space(self._held_rows(locked))
+        imposed = motion.rate - slips @ np.linalg.lstsq(slips, motion.rate, rcond=None)[0]
+        return AHEAD * contact.planar.potential_of(imposed) > STILL
 
     def set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
         """Give a contact the ``slip``, as far as joints allow, by a change of the initial velocities."""

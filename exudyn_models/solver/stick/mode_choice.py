@@ -16,7 +16,7 @@ from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.locked_contacts import LockedContacts, undecided
 from exudyn_models.solver.stick.resting_axes import RestingAxes
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
-from exudyn_models.solver.stick.slip_motion import RESOLVED
+from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import STILL, PlanarContact, StickingContact
 from reference_model.trajectory import SimulationError
 
@@ -55,6 +55,10 @@ class ModeChoice:
         if self._planar:  # slip on one axis has a constant direction
             self._dynamics.evaluate(t)
             self._locked = LockedContacts(self._mbs, self._dynamics, self._contacts)
+
+    def passes(self, contact: PlanarContact, motion: SlipMotion) -> bool:
+        """Return whether a slip may only pass through zero, after ``survey``."""
+        return self._locked.passes(contact, motion)
 
     def begin(self) -> None:
         """Remove the slip of contacts that start locked."""

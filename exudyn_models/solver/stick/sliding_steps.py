@@ -51,7 +51,7 @@ class SlidingSteps:
         return motion.rests_within(contact.rest_share * self._step / APPROACH)
 
     def beyond(self, motion: SlipMotion) -> float:
-        """Return the time (s) after a rest in which the slip grows until its direction is resolved."""
+        """Return the time (s) after a rest until the slip is large enough to have a direction."""
         shortest = PlanarContact.rest_share * self._step
         return max(shortest, 2.0 * RESOLVED * motion.largest_term / motion.rate_potential)
 

@@ -261,12 +261,6 @@ class PlanarContact(StickingContact):
         """Return whether a sliding contact stops within a ``time`` (s)."""
         return self.free_to_slide and self.motion(mbs).rests_within(time)
 
-    def cannot_rest(self, motion: SlipMotion) -> bool:
-        """Return whether joints and prescribed motions accelerate the slip, so it may only pass through zero."""
-        allowed = self.planar.allowed
-        imposed = motion.rate - allowed @ np.linalg.lstsq(allowed, motion.rate, rcond=None)[0]
-        return AHEAD * self.planar.potential_of(imposed) > STILL
-
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
         motion = self.motion(mbs, configuration)
         if self.holding(t) == 0.0:

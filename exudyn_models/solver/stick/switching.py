@@ -282,7 +282,8 @@ class _Run:
         """
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
         stopping = [(contact, motion) for contact, motion in motions if self._slides.stops(contact, motion)]
-        passing = [motion for contact, motion in stopping if contact.cannot_rest(motion)]
+        self._modes.survey(self._reached)
+        passing = [motion for contact, motion in stopping if self._modes.passes(contact, motion)]
         time = min(motion.remaining for _, motion in stopping)
         time += max((self._slides.beyond(motion) for motion in passing), default=0.0)
         if self._reached + time > self._reached:
