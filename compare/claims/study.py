@@ -335,10 +335,8 @@ class Study:
             if engine is None:
                 raise
             if error.residual < GRADES[Grade.FINE]:
-                raise UnsupportedSystemError(
-                    f"{engine.name} comes back to its start within {error.residual:.1e} of the orbit, too "
-                    "inaccurately for shooting; declare its precision, or shorten its step"
-                ) from None
+                why = f"is too inaccurate for shooting, because it misses its start by {error.residual:.1e}"
+                raise UnsupportedSystemError(f"{engine.name} {why}; declare its precision") from None
             raise RuntimeError(
                 f"{engine.name} has no periodic motion near that of exact Coulomb friction, so this claim cannot be "
                 f"measured; check its friction law and shorten its step ({str(error).partition(';')[0]})"
@@ -361,6 +359,7 @@ class Study:
             raise ValueError(
                 f"claim {declared.sentence!r}: no resolution given; set it in the declaration or in Measured"
             )
+        doubt = 1.0 if engine is None else DOUBT
         claim = Claim(
             declared.sentence_of(case),
             equation=declared.equation,
@@ -368,12 +367,7 @@ class Study:
             engine=THEORY if engine is None else engine.name,
             predicted=np.asarray(measured.predicted),
             measured=np.asarray(measured.value),
-            budget=ErrorBudget(
-                measured.error,
-                model=measured.model,
-                resolution=resolution,
-                doubt=1.0 if engine is None else DOUBT,
-            ),
+            budget=ErrorBudget(measured.error, model=measured.model, resolution=resolution, doubt=doubt),
             parameters=known | dict(measured.parameters),
             source=measured.source or self.source,
             unit=declared.unit,
@@ -387,8 +381,9 @@ class Study:
             size=None if measured.size is None else np.asarray(measured.size),
             axes=measured.axes,
         )
-        # where the precision of an engine is limited, all within the resolution is negligible
-        return claim if engine is not None and engine.noise > 0.0 else claim.strict
+        # a fixed step or a limited precision has irregular errors, so all within the resolution is negligible
+        irregular = engine is not None and (engine.step is not None or engine.noise > 0.0)
+        return claim if irregular else claim.strict
 
     def sentences(self) -> dict[str, str]:
         """Return the sentences about engines with their selectors in ``only``."""
