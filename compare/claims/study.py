@@ -300,7 +300,9 @@ class Study:
                     continue
                 try:
                     ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
-                    found, note = decided(engine, ask, _is_open)
+                    found, note = decided(
+                        engine, ask, lambda it: it is not None and it[0].verdict is Verdict.INCONCLUSIVE
+                    )
                 except DeclaredLackError as error:
                     lacking.append(printable(error))
                     continue
@@ -325,7 +327,7 @@ class Study:
         self,
         declared: Declared,
         case: str,
-        arguments: tuple[Any, ...],
+        arguments: Sequence[Any],
         few: Mapping[str, Any],
         engine: Engine | None,
     ) -> tuple[Claim, Data] | None:
@@ -348,8 +350,7 @@ class Study:
             data, lost = _arrays(measured.data() if callable(measured.data) else measured.data), ""
         except Exception as error:  # a figure must not cost a verdict
             data, lost = {}, f"Not drawn, because of {type(error).__name__}: {printable(error)}."
-        notes = filter(None, (claim.note, claim.caution, lost))
-        return replace(claim, note=" ".join(notes)), data
+        return replace(claim, note=" ".join(filter(None, (claim.note, claim.caution, lost)))), data
 
     def _claim_of(self, declared: Declared, case: str, measured: Measured, engine: Engine | None) -> Claim:
         system = measured.system or self.system
@@ -357,7 +358,7 @@ class Study:
         resolution = declared.resolution if measured.resolution is None else measured.resolution
         if resolution is None:
             raise ValueError(
-                f"claim {declared.sentence!r}: no resolution given; set it in the declaration or in Measured"
+                f"claim {declared.sentence!r}: no resolution given, neither declared nor measured"
             )
         doubt = 1.0 if engine is None else DOUBT
         claim = Claim(
@@ -381,9 +382,7 @@ class Study:
             size=None if measured.size is None else np.asarray(measured.size),
             axes=measured.axes,
         )
-        # a fixed step or a limited precision has irregular errors, so all within the resolution is negligible
-        irregular = engine is not None and (engine.step is not None or engine.noise > 0.0)
-        return claim if irregular else claim.strict
+        return claim.strict if engine is None or engine.is_smooth else claim
 
     def sentences(self) -> dict[str, str]:
         """Return the sentences about engines with their selectors in ``only``."""
@@ -395,10 +394,6 @@ class Study:
         return next(
             one.duration for one in self.declared for case, _ in one.cases() if part == one.part(case)
         )
-
-
-def _is_open(found: tuple[Claim, Data] | None) -> bool:
-    return found is not None and found[0].verdict is Verdict.INCONCLUSIVE
 
 
 def _arrays(data: Mapping[str, Any]) -> Data:

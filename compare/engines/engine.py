@@ -3,7 +3,7 @@
 import functools
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -108,6 +108,7 @@ class Engine:
     version: str = ""
     about: str = ""
     seed: int | None = None
+    _seen_noise: float = field(default=0.0, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         for name in ("name", "kin", "version", "about"):
@@ -183,7 +184,15 @@ class Engine:
     @property
     def noise(self) -> float:
         """The declared precision, or that of single precision if the engine has returned such numbers."""
-        return self.precision or float(self.__dict__.get("_seen_noise", 0.0))
+        return self.precision or self._seen_noise
+
+    @property
+    def is_smooth(self) -> bool:
+        """True if errors depend smoothly on the tolerance, unlike those of a fixed step or a limited precision.
+
+        Otherwise differences within the resolution of a claim are negligible.
+        """
+        return self.step is None and self.noise == 0.0
 
     @property
     def _asked(self) -> Callable[..., Any]:

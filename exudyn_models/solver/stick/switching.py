@@ -283,9 +283,9 @@ class _Run:
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
         stopping = [(contact, motion) for contact, motion in motions if self._slides.stops(contact, motion)]
         self._modes.survey(self._reached)
-        passing = [motion for contact, motion in stopping if self._modes.passes(contact, motion)]
+        passing = {contact: motion for contact, motion in stopping if self._modes.passes(contact, motion)}
         time = min(motion.remaining for _, motion in stopping)
-        time += max((self._slides.beyond(motion) for motion in passing), default=0.0)
+        time += max(map(self._slides.beyond, passing.values()), default=0.0)
         if self._reached + time > self._reached:
             for contact, _ in stopping:
                 contact.planar.frozen = True
@@ -295,8 +295,8 @@ class _Run:
                 for contact, _ in stopping:
                     contact.planar.frozen = False
         self._modes.survey(self._reached)
-        for contact, motion in stopping:
-            if not any(motion is one for one in passing):
+        for contact, _ in stopping:
+            if contact not in passing:
                 self._modes.enter(self._reached, contact, Mode.LOCKED)
 
     def _step_to(self, t: float) -> None:
