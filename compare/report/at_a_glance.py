@@ -92,7 +92,9 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
     else:
         grade = OPEN
     where = why = f"?engine={quote(engine)}#studies"
-    sentences = _counted(matrix, engine)
+    sentences, share = _counted(matrix, engine), run.share(engine)
+    if share.measured < share.of:
+        sentences.append(share.in_words("claim"))
     cells: tuple[Cell | None, ...] = ()
     settings = recorded.by_engine.get(engine, []) if recorded is not None else []
     if recorded is not None and settings:

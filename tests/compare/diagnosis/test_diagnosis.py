@@ -20,7 +20,7 @@ from compare.diagnosis.probes import PULLS
 from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
-from compare.diagnosis.scaling import Scales
+from compare.diagnosis.scaling import Scales, deviation
 from compare.engines import COARSENING, USUAL_TOLERANCE, BadTrajectoryError, Engine, exudyn, plain, reference
 from compare.run.workers import Failure
 from reference_model import Trajectory
@@ -342,6 +342,29 @@ def test_a_regularisation_that_falls_with_the_step_is_not_wrong():
     assert "regularised as min(v/ε, 1) with ε = 0.00" in said
     assert "m/s, decreasing with the step" in said
     assert row.verdict == RIGHT_VERDICT
+
+
+@pytest.mark.parametrize(
+    ("share", "coarser", "falls"), [(0.9, 0.7, True), (0.9, 0.9, False), (1.1, 0.7, False)]
+)
+def test_only_friction_that_is_too_small_and_grows_from_step_to_step_is_a_regularisation(
+    share, coarser, falls
+):
+    slips = np.array([[math.cos(angle), math.sin(angle)] for angle in np.linspace(0.1, 3.0, 8)])
+    conditions = np.tile([1.0, 1.0, 1.0, 0.0, 1.0], (len(slips), 1))
+    conditions[:, 1] = np.linspace(1.0, 2.0, len(slips))  # equal forces would be a limit in N
+    scales = Scales(
+        conditions,
+        -share * slips,
+        -coarser * slips,
+        slips,
+        slips,
+        np.full(len(slips), 1e-9),
+        np.ones(slips.shape),
+    )
+    found = deviation(scales, Friction(CONE, 1.0, 0.0, 1e-9, 0.0, True))
+    assert found is not None
+    assert found.falls == falls
 
 
 def test_a_lag_of_one_step_is_reported_but_is_not_wrong():

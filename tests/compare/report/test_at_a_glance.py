@@ -102,7 +102,8 @@ def test_a_small_error_that_differs_is_contrasted_with_a_larger_one_that_agrees(
 
 def test_an_engine_of_the_run_is_described_by_its_claims(found):
     assert found["good"].sentence == (
-        "3 of 5 checks against independent evidence agree. 1 check differs and 1 is inconclusive."
+        "3 of 5 checks against independent evidence agree. 1 check differs and 1 is inconclusive. "
+        "Measured 4 of 5 claims (80 %)."
     )
     assert (found["good"].version, found["good"].why) == ("3", "?engine=good#studies")
     assert found["failing"].sentence == ("1 of 1 checks against independent evidence agree. 4 checks failed.")
