@@ -14,7 +14,6 @@ EXPECTED = 0.95
 class Validation:
     """Result of a comparison with measurements.
 
-    - ``sentence``: result in a sentence, with its numbers.
     - ``quantity``, ``unit``: compared quantity, and the unit of all following numbers.
     - ``error``, ``error_uncertainty``: median of the comparison error E = S − D, and its standard error from the
       scatter.
@@ -25,7 +24,6 @@ class Validation:
     - ``model``: standard deviation of an error of the theory that would have the same effect.
     """
 
-    sentence: str
     quantity: str
     unit: str
     error: float
