@@ -57,7 +57,7 @@ class Dynamics:
             solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
             solver.ComputeJacobianAE(self._mbs, 1.0, 1.0, 1.0)
             self.gradients = np.array(solver.GetSystemJacobian())[-self._count :, :size]
-            self.rates = self._prescribed_rates(t)
+            self.rates = self._prescribed_rates(t) if self.gradients.any() else np.zeros(self._count)
         key = self.mass.tobytes(), self.gradients.tobytes()
         if key not in self._inverses:
             if len(self._inverses) == KEPT:
@@ -117,22 +117,25 @@ def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
 
     If constraints depend on each other, it is the pseudoinverse of the scaled equations, whose forces are smallest.
     """
-    size, count = len(mass), len(gradients)
-    scale = np.ones(size + count)
-    scale[:size] = np.sqrt(mobilities(mass))
-    lengths = np.linalg.norm(gradients * scale[:size], axis=1)
-    active = lengths > 0.0
-    scale[size:][active] = 1.0 / lengths[active]
-    system = np.diag(np.concatenate((np.zeros(size), ~active)))
-    system[:size, :size], system[size:, :size], system[:size, size:] = mass, gradients, gradients.T
-    system *= scale[:, None] * scale
+    active = gradients.any(axis=1)
+    scale = np.sqrt(mobilities(mass))
+    slips = gradients[active] * scale
+    lengths = np.linalg.norm(slips, axis=1)
+    slips /= lengths[:, None]
+    size, masses = len(mass), scale[:, None] * mass * scale
+    system = np.zeros((size + len(slips), size + len(slips)))
+    system[:size, :size], system[size:, :size], system[:size, size:] = masses, slips, slips.T
     try:
-        inverse = np.linalg.inv(system)
+        found = np.linalg.inv(system)
     except np.linalg.LinAlgError:
-        inverse = np.full((1, 1), np.inf)
-    if not np.abs(inverse).max(initial=0.0) < SINGULAR:
-        inverse = np.linalg.pinv(system, rcond=1.0 / SINGULAR, hermitian=True)
-    return np.asarray(scale[:, None] * inverse * scale)
+        found = np.full((1, 1), np.inf)
+    if not np.abs(found).max(initial=0.0) < SINGULAR:
+        found = np.linalg.pinv(system, rcond=1.0 / SINGULAR, hermitian=True)
+    places = np.concatenate((np.ones(size, dtype=bool), active))
+    scale = np.concatenate((scale, 1.0 / lengths))
+    inverse = np.zeros((len(places), len(places)))
+    inverse[np.ix_(places, places)] = scale[:, None] * found * scale
+    return inverse
 
 
 def mobilities(mass: FloatArray) -> FloatArray:

@@ -86,9 +86,11 @@ class ModeChoice:
         planar = [contact.margin(self._mbs, t) for contact in self._planar]
         if planar and min(planar) < 0.0 and self._locked.balance(t):
             planar = [contact.margin(self._mbs, t) for contact in self._planar]
-        own = self._axes.margins(t)
-        own.update(zip(self._planar, planar, strict=True))
-        return [own[contact] for contact in self._contacts]
+        on_axes: list[float] = self._axes.margins(t).tolist()
+        if not planar:
+            return on_axes
+        of_axes, of_plane = iter(on_axes), iter(planar)
+        return [next(of_plane if isinstance(one, PlanarContact) else of_axes) for one in self._contacts]
 
     def end(self, t: float, ended: Sequence[StickingContact]) -> None:
         """Leave the modes that end at the time t (s)."""
@@ -142,6 +144,8 @@ class ModeChoice:
 
     def _held_from_the_plane(self) -> list[StickingContact]:
         """Return the contacts at rest on axes that contacts in the plane hold as well."""
+        if not self._planar:
+            return []
         return [
             contact
             for contact in self._contacts

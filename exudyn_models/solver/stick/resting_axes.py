@@ -7,6 +7,7 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.forces.axial_pairs import Mode
@@ -103,7 +104,7 @@ class _Group:
 
     mbs: Any
     contacts: list[StickingContact]
-    places: list[int]
+    places: NDArray[Any]
     load: SharedLoad
 
     def moments(self, t: float) -> tuple[FloatArray, float]:
@@ -129,12 +130,16 @@ class RestingAxes:
     ) -> None:
         self._mbs, self._dynamics, self._contacts, self._every = mbs, dynamics, contacts, every
         self._step, self._data = step, mbs.systemData
-        self._places = [int(self._data.GetObjectLTGAE(contact.stick.locks[0])[0]) for contact in contacts]
+        places = [int(self._data.GetObjectLTGAE(contact.stick.locks[0])[0]) for contact in contacts]
+        self._places = np.array(places, dtype=int)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped = set[StickingContact]()
         self._locked: list[int] = []
-        self._alone: list[int] = []
+        self._alone, self._alone_places = list[int](), np.empty(0, dtype=int)
         self._groups: list[_Group] = []
+        self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
+        self._rows, self._limits = np.empty((0, self._data.ODE2Size())), np.empty((0, 2))
+        self._directions = self._offsets = np.empty(0)
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
@@ -151,9 +156,10 @@ class RestingAxes:
         self._dynamics.evaluate(t)
         self._iterate(t, self._present)
 
-    def _present(self) -> tuple[FloatArray, FloatArray]:
-        """Return accelerations and constraint forces of the present modes."""
-        return self._dynamics.solution(self._dynamics.forces())
+    def _present(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return generalised forces, accelerations and constraint forces of the present modes."""
+        forces = self._dynamics.forces()
+        return forces, *self._dynamics.solution(forces)
 
     def settle(self, t: float) -> None:
         """Choose the modes, and store accelerations and constraint forces.
@@ -170,7 +176,7 @@ class RestingAxes:
         self._dynamics.evaluate(t)
         slips = _Slips(self._mbs, self._dynamics, self._contacts)
         now, capacities = slips.now(), np.array([contact.holding(t) for contact in self._contacts])
-        accelerations, _ = self._present()
+        _, accelerations, _ = self._present()
         still = np.abs(now) <= slips.still(self._step, accelerations, capacities)
         modes = [
             Mode.LOCKED if at_rest or contact in self._ended else Mode(int(np.sign(slip)))
@@ -185,7 +191,20 @@ class RestingAxes:
         )
         for i in self._locked:
             self._contacts[i].enter(self._mbs, Mode.LOCKED)
-        slips.stop(self._locked)
+        # A slip that begins may still have rounding errors in the other direction.
+        wrong = [
+            i
+            for i, (contact, slip) in enumerate(zip(self._contacts, now, strict=True))
+            if modes[i] == Mode.LOCKED and contact.stick.slides and int(contact.mode) * slip < 0.0
+        ]
+        stopped = self._locked + wrong
+        independent, _ = independent_rows(slips.to_rates[np.ix_(stopped, stopped)], range(len(self._locked)))
+        slips.stop([stopped[i] for i in independent])
+        self._rows = slips.rows
+        self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
+        self._offsets = 1.0 - np.abs(self._directions)
+        self._alone_places = self._places[self._alone]
+        self._limits = np.array([contact.capacities(t) for contact in self._contacts])
 
     def _load(self) -> None:
         self._data.SetSystemState(self._data.GetSystemState(exu.ConfigurationType.Initial), CURRENT)
@@ -193,17 +212,19 @@ class RestingAxes:
     def _iterate(
         self,
         t: float,
-        solve: Callable[[], tuple[FloatArray, FloatArray]],
+        solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
         configurations: Sequence[Any] = (CURRENT, exu.ConfigurationType.Initial),
     ) -> None:
         """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
-        before: Any = np.inf
+        holding = [contact.holding(t) for contact in self._every]
         for _ in range(ITERATIONS):
-            self._dynamics.store(*solve(), configurations)
-            now = np.concatenate((self._dynamics.forces(), [contact.holding(t) for contact in self._every]))
+            forces, accelerations, constraints = solve()
+            before = np.concatenate((forces, holding))
+            self._dynamics.store(accelerations, constraints, configurations)
+            holding = [contact.holding(t) for contact in self._every]
+            now = np.concatenate((self._dynamics.forces(), holding))
             if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
                 return
-            before = now
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s: loads that depend "
             "on constraint forces do not settle"
@@ -211,8 +232,8 @@ class RestingAxes:
 
     def _choose(
         self, t: float, slips: _Slips, modes: Sequence[Mode], before: Sequence[int]
-    ) -> tuple[FloatArray, FloatArray]:
-        """Enter the modes under the present loads; return accelerations and constraint forces."""
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Enter the modes under the present loads; return these, accelerations and constraint forces."""
         mbs, contacts = self._mbs, self._contacts
         for contact, mode in zip(contacts, modes, strict=True):
             contact.enter(mbs, Mode.OPEN if contact.holding(t) == 0.0 else mode, lock=False)
@@ -223,7 +244,7 @@ class RestingAxes:
         shrunk = (SHRUNK * overloads * static.max(axis=1, initial=0.0))[:, None]
         sliding = np.minimum(static - shrunk, static / ratios)
         slipped = np.array([contacts[i] in self._slipped for i in still], dtype=bool)[:, None]
-        accelerations, _ = self._present()
+        _, accelerations, _ = self._present()
         directions = rest_or_slip(
             slips.to_rates[np.ix_(still, still)],
             slips.rates(accelerations)[still],
@@ -235,9 +256,10 @@ class RestingAxes:
             if direction != 0.0:
                 contacts[i].enter(mbs, Mode(int(direction)))
         self._group(slips, [i for i in still if contacts[i].mode == Mode.LOCKED], before)
-        moments, accelerations, constraints = slips.hold(self._locked, self._dynamics.forces())
-        constraints[[self._places[i] for i in self._locked]] = -moments
-        return accelerations, constraints
+        forces = self._dynamics.forces()
+        moments, accelerations, constraints = slips.hold(self._locked, forces)
+        constraints[self._places[self._locked]] = -moments
+        return forces, accelerations, constraints
 
     def _group(self, slips: _Slips, resting: Sequence[int], before: Sequence[int]) -> None:
         """Choose the contacts that become constraints, and find those that share their loads."""
@@ -246,10 +268,14 @@ class RestingAxes:
         )
         self._locked = [resting[i] for i in chosen]
         others = [i for i in resting if i not in self._locked]
+        self._groups = []
+        if not others:
+            self._alone = self._locked
+            return
         links = np.zeros((len(resting), len(resting)))
         links[len(chosen) :, : len(chosen)] = by_chosen
-        members, self._groups, self._alone = np.array(self._locked + others, int), list[_Group](), list[int]()
-        count, of_group = connected_components(links, directed=False) if resting else (0, [])
+        members, self._alone = np.array(self._locked + others, int), list[int]()
+        count, of_group = connected_components(links, directed=False)
         for number in range(count):
             own = np.flatnonzero(of_group == number)
             first, rest = own[own < len(chosen)], own[own >= len(chosen)] - len(chosen)
@@ -259,39 +285,51 @@ class RestingAxes:
             group = _Group(
                 self._mbs,
                 [self._contacts[i] for i in members[own]],
-                [self._places[i] for i in members[first]],
+                self._places[members[first]],
                 SharedLoad(by_chosen[np.ix_(rest, first)]),
             )
             self._groups.append(group)
             for i, contact in enumerate(group.contacts):
                 contact.stick.shared = partial(group.moment_of, i)
 
-    def margins(self, t: float) -> dict[StickingContact, float]:
-        """Return numbers that fall below zero when the present modes end.
+    def margins(self, t: float) -> FloatArray:
+        """Return numbers that fall below zero when the present modes end, shape (k,).
 
         They are the slip in the direction of sliding (rad/s), the unused share of the capacity of contacts at rest,
         or ±1 without load or coefficient.
         """
-        margins = {contact: contact.margin(self._mbs, t) for contact in self._contacts}
-        left = self._left(t)
-        if min(left.values(), default=1.0) < NEAR:
+        slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
+        margins: FloatArray = self._offsets + self._directions * slips
+        for i in self._varying:
+            margins[i] = self._contacts[i].margin(self._mbs, t)
+            self._limits[i] = self._contacts[i].capacities(t)
+        if self._left(t, margins) < NEAR:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
             self._dynamics.evaluate(t)
             self._iterate(t, self._present, (CURRENT,))
-            left = self._left(t)
+            self._left(t, margins)
             self._data.SetAECoordinates(before[0])
             self._data.SetODE2Coordinates_tt(before[1])
-        return {contact: min(margin, left.get(contact, margin)) for contact, margin in margins.items()}
+        return margins
 
-    def _left(self, t: float) -> dict[StickingContact, float]:
-        """Return the unused shares of the capacities of contacts at rest; that of a one-way clutch is continuous."""
-        alone = [self._contacts[i] for i in self._alone]
-        limits = np.array([contact.capacities(t) for contact in alone]).reshape(-1, 2)
-        held = -self._data.GetAECoordinates()[[self._places[i] for i in self._alone]]
-        shares = np.minimum(limits[:, 1] - held, limits[:, 0] + held) / limits.max(axis=1, initial=0.0)
-        left = dict(zip(alone, shares.tolist(), strict=True))
+    def _left(self, t: float, margins: FloatArray) -> float:
+        """Reduce ``margins`` to the unused shares of capacities; return the least of these shares.
+
+        That of a one-way clutch is continuous.
+        """
+        least = 1.0
+        if len(self._alone):
+            limits = self._limits[self._alone]
+            held = self._data.GetAECoordinates()[self._alone_places]
+            left = np.minimum(limits[:, 1] + held, limits[:, 0] - held) / np.maximum(
+                limits[:, 0], limits[:, 1]
+            )
+            margins[self._alone] = np.minimum(margins[self._alone], left)
+            least = left.min()
         for group in self._groups:
             share = max(1.0 - group.moments(t)[1], -1.0)
             for contact in group.contacts:
-                left[contact] = share if group.places else 1.0 - abs(contact.slip(self._mbs)) / STILL
-        return left
+                i = self._contacts.index(contact)
+                left = share if len(group.places) else 1.0 - abs(contact.slip(self._mbs)) / STILL
+                margins[i], least = min(margins[i], left), min(least, left)
+        return least
