@@ -148,10 +148,11 @@ def test_a_locked_rotor_follows_a_prescribed_shaft_with_a_constant_moment(solver
     assert rate_of(mbs, wheel) == pytest.approx(0.6, abs=1e-9)
 
 
-@pytest.mark.parametrize("speed", [0.0, 8.0])
-def test_a_brake_in_a_joint_that_turns_releases_at_its_static_moment(speed):
+@pytest.mark.parametrize("speed", [0.0, 2.0, 8.0])
+@pytest.mark.parametrize("node", ["RotationRotationVector", "RotationEulerParameters"])
+def test_a_brake_in_a_joint_that_turns_releases_once_at_its_static_moment(speed, node):
     """The axis of the wheel is tilted by 40° from the axis of the turret, which turns freely."""
-    mbs, node = new_model(), exu.NodeType.RotationRotationVector
+    mbs, node = new_model(), getattr(exu.NodeType, node)
     turned = exu.rigidBodyUtilities.RotationMatrixX(math.radians(40.0))
     turret = ball(mbs, node, 5.0, 50.0, np.zeros(3), np.zeros(3), [0.0, 0.0, speed])
     wheel = ball(mbs, node, 1.0, 0.5, np.zeros(3), np.zeros(3), [0.0, 0.0, speed], turned)
