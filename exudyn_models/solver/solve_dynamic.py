@@ -91,7 +91,8 @@ def solve_dynamic(
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
     find_again(mbs)
-    contacts, changes = sticking_contacts(mbs, simulationSettings.timeIntegration.startTime), []
+    options, changes = simulationSettings.timeIntegration, list[ModeChange]()
+    contacts = sticking_contacts(mbs, options.startTime, options.endTime)
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
         modes: list[Mode] = []
         for goes_on in parts:

@@ -60,8 +60,17 @@ class ModeChoice:
         """Return whether a slip may only pass through zero, after ``survey``."""
         return self._locked.passes(contact, motion)
 
-    def begin(self) -> None:
-        """Remove the slip of contacts that start locked."""
+    def begin(self, t: float) -> None:
+        """Let velocities satisfy all joints, by an impact without friction, and stop contacts that start locked."""
+        data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
+        for contact in self._contacts:
+            contact.enter(self._mbs, contact.mode, lock=False)
+        self._dynamics.evaluate(t)
+        change = self._dynamics.violation()
+        if change.any():
+            data.SetODE2Coordinates_t(data.GetODE2Coordinates_t(initial) + change, initial)
+        for contact in self._contacts:
+            contact.enter_first(self._mbs, t)
         for contact in self._planar:
             if contact.mode == Mode.LOCKED:
                 self._locked.set_slip(contact, np.zeros(3))

@@ -303,33 +303,33 @@ class RestingAxes:
         for i in self._varying:
             margins[i] = self._contacts[i].margin(self._mbs, t)
             self._limits[i] = self._contacts[i].capacities(t)
-        if self._left(t, margins) < NEAR:
+        left = self._left(t)
+        least = left.min(initial=1.0)
+        if least < NEAR:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
             self._dynamics.evaluate(t)
             self._iterate(t, self._present, (CURRENT,))
-            self._left(t, margins)
+            left = self._left(t)
+            if least < -1.0 and left.min() > 0.0:
+                raise SimulationError(
+                    f"a locked contact held {1.0 - least:.3g} times its capacity in a step, but not at its end t = "
+                    f"{t:.9g} s: a speed that a constraint prescribes jumps there; pass this time in breaks"
+                )
             self._data.SetAECoordinates(before[0])
             self._data.SetODE2Coordinates_tt(before[1])
-        return margins
+        return np.minimum(margins, left)
 
-    def _left(self, t: float, margins: FloatArray) -> float:
-        """Reduce ``margins`` to the unused shares of capacities; return the least of these shares.
-
-        That of a one-way clutch is continuous.
-        """
-        least = 1.0
+    def _left(self, t: float) -> FloatArray:
+        """Return the unused shares of capacities, 1 in slip; that of a one-way clutch is continuous."""
+        left = np.ones(len(self._contacts))
         if len(self._alone):
             limits = self._limits[self._alone]
             held = self._data.GetAECoordinates()[self._alone_places]
-            left = np.minimum(limits[:, 1] + held, limits[:, 0] - held) / np.maximum(
-                limits[:, 0], limits[:, 1]
-            )
-            margins[self._alone] = np.minimum(margins[self._alone], left)
-            least = left.min()
+            unused = np.minimum(limits[:, 1] + held, limits[:, 0] - held)
+            left[self._alone] = unused / np.maximum(limits[:, 0], limits[:, 1])
         for group in self._groups:
             share = max(1.0 - group.moments(t)[1], -1.0)
             for contact in group.contacts:
-                i = self._contacts.index(contact)
-                left = share if len(group.places) else 1.0 - abs(contact.slip(self._mbs)) / STILL
-                margins[i], least = min(margins[i], left), min(least, left)
-        return least
+                slipping = 1.0 - abs(contact.slip(self._mbs)) / STILL
+                left[self._contacts.index(contact)] = share if len(group.places) else slipping
+        return left

@@ -272,14 +272,18 @@ class PlanarContact(StickingContact):
         return Mode.BACKWARD if rim < -NEGLIGIBLE * sideways else Mode.FORWARD  # spin may be a rounding error
 
 
-def sticking_contacts(mbs: Any, t: float) -> list[StickingContact]:
-    """Return the contacts of a model that stick exactly, on one axis or in the plane at its initial values."""
+def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
+    """Return the contacts of a model that stick exactly, on one axis or in the plane, in a run between two times (s).
+
+    Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
+    """
     contacts = [
         StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, contact in contacts_of(mbs).items()
         if contact.stick is not None
     ]
-    _locate(mbs, t, contacts)
+    # Powers keep periodic motions from vanishing at all of these times.
+    _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)
     return [
         (StickingContact if part.on_axis else PlanarContact)(contact.item, part, contact.places)
         for contact in contacts
@@ -287,8 +291,8 @@ def sticking_contacts(mbs: Any, t: float) -> list[StickingContact]:
     ]
 
 
-def _locate(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
-    """Find the parts of contacts that joints hold on one axis."""
+def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) -> None:
+    """Find the parts of contacts that joints hold on one axis at all ``times`` (s)."""
     parts = [
         PlanarContact(contact.item, part, contact.places)
         for contact in contacts
@@ -297,13 +301,18 @@ def _locate(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
     ]
     if not parts:
         return
-    dynamics = Dynamics(mbs, t, 1.0)
-    dynamics.evaluate(t)
-    joints = joints_of(mbs, dynamics, contacts)
+    dynamics = Dynamics(mbs, times[0], 1.0)
+    dynamics.evaluate(times[0])
+    joints, speeds = dynamics.gradients, dynamics.prescribed_speeds(times)
     for part in parts:
         across = part.slip_rows(mbs)[:2]
         across[np.abs(across) < NEGLIGIBLE] = 0.0
         part.planar.on_axis = part.planar.mean_radius > 0.0 and spanned(across, joints)
+        if part.planar.on_axis and speeds.any():
+            shares = np.linalg.lstsq(joints.T, across.T, rcond=None)[0]
+            part.planar.on_axis = bool(
+                (np.abs(speeds @ shares) <= NEGLIGIBLE * np.abs(speeds) @ np.abs(shares)).all()
+            )
         part.planar.set_basis(SPIN)
 
 

@@ -95,7 +95,7 @@ class _Run:
             user_function(mbs, "PostStep", self._after_step),
         ):
             self._choose_accuracy()
-            self._modes.begin()
+            self._modes.begin(self._reached)
             self._modes.settle(self._reached)
             self._note(before)
             while self._reached < self._end - ON_GRID * self._step and not self._stopped:

@@ -22,6 +22,7 @@ from free_bodies import (
 
 from exudyn_models import add_ring_friction, solve_dynamic
 from exudyn_models.solver.stick.complementarity import SharedLoad, bounded_forces, rest_or_slip
+from reference_model.trajectory import SimulationError
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = pytest.mark.parametrize("solver", [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha])
@@ -135,6 +136,32 @@ def test_a_block_on_a_path_that_reverses_passes_through_zero_slip(solver, radius
     assert mbs.GetSensorValues(heat) == pytest.approx(
         20.0 * way + 0.5 * across**2, abs=0.02 if across else 1e-4
     )
+
+
+def test_a_disc_that_slides_on_a_prescribed_path_loses_its_spin_slowly():
+    """At a slip u much faster than its rim, a ring of radius R has the moment μN·R²·S/(2u)."""
+    mbs = new_model()
+    disc = planar_body(mbs, 1.0, 0.05, [0.0] * 3, [0.5, 0.0, 0.1])
+    prescribe(mbs, disc, lambda t: 0.5 * t, lambda t: 0.5)
+    mbs.AddObject(items.CoordinateConstraint(markerNumbers=[coordinate(mbs, None), coordinate(mbs, disc, 1)]))
+    clutch(mbs, None, disc, 4.0, contact_radius=0.2)
+    assert changes_of(mbs, 0.2, 1e-3) == []
+    spin = mbs.GetNodeOutput(disc, exu.OutputVariableType.Coordinates_t)[2]
+    assert spin == pytest.approx(0.1 * math.exp(-4.0 * 0.2**2 * 0.2 / (2.0 * 0.5 * 0.05)), rel=1e-3)
+
+
+@IMPLICIT
+def test_a_prescribed_speed_that_jumps_at_a_break_lets_a_locked_clutch_slip(solver):
+    def run(**breaks):
+        mbs = new_model()
+        shaft, wheel = rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0)
+        prescribe(mbs, shaft, lambda t: 2.0 * max(0.0, t - 0.1), lambda t: 2.0 if t > 0.1 else 0.0)
+        clutch(mbs, shaft, wheel, 5.0)
+        return changes_of(mbs, 0.6, 1e-2, solver, **breaks)
+
+    assert [time for time, *_ in run(breaks=(0.1,))] == pytest.approx([0.1, 0.1 + 2.0 / 5.0], abs=1e-9)
+    with pytest.raises(SimulationError, match="a speed that a constraint prescribes jumps there"):
+        run()
 
 
 @IMPLICIT
