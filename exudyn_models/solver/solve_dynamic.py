@@ -34,7 +34,7 @@ from exudyn_models.solver.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.stick.sticking_contacts import (
     ModeChange,
     StickingContact,
-    first_modes,
+    running,
     sticking_contacts,
 )
 from exudyn_models.solver.stick.switching import run_switching
@@ -161,7 +161,7 @@ def _solve(
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
-            repairs.enter_context(first_modes(mbs, contacts, options.startTime))
+            repairs.enter_context(running(mbs, contacts))
             if solver in IMPLICIT:
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()

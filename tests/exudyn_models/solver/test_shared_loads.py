@@ -21,7 +21,7 @@ from free_bodies import (
 )
 
 from exudyn_models import add_ring_friction, solve_dynamic
-from exudyn_models.solver.stick.complementarity import SharedLoad, bounded_forces, rest_or_slip
+from exudyn_models.solver.stick.complementarity import Sets, SharedLoad, bounded_forces, rest_or_slip
 from reference_model.trajectory import SimulationError
 
 SOLVERS = exu.DynamicSolverType
@@ -59,8 +59,11 @@ def test_forces_between_limits_are_those_of_the_least_sum_over_all_modes():
 
 def test_of_two_contacts_the_weaker_one_slips_and_then_has_sliding_friction():
     chain = np.array([[2.0, -1.0], [-1.0, 1.0]])
-    found = rest_or_slip(chain, np.array([0.0, 3.0]), np.zeros(2), np.full((2, 2), 2.0), np.full((2, 2), 1.0))
-    assert found.tolist() == [0.0, 1.0]
+    sets = Sets([slice(0, 1), slice(1, 2)], [None, None])
+    found = rest_or_slip(
+        chain, np.array([0.0, 3.0]), np.zeros(2), sets, np.full((2, 2), 2.0), np.full((2, 2), 1.0)
+    )
+    assert np.sign(found).tolist() == [0.0, 1.0]
 
 
 @pytest.mark.parametrize("loads", [(0.0, 0.0), (5.0, -3.0), (-2.0, 6.0)])
