@@ -8,7 +8,7 @@ contact at a limit may slip against its force. Redundant contacts share a load, 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import combinations, islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ SLIPS = 1e-8
 
 DEPENDENT = 1e-9
 """Part of a gradient of slip, relative to its length in the metric of the mass, that other contacts do not hold."""
+
+SUBSETS = 64
+"""Largest number of sets of slipping contacts to try, beginning with the smallest."""
 
 PREFERRED = 1e3
 """Factor on the independent part of preferred gradients; with a tiny part, forces on others would be large."""
@@ -176,8 +179,9 @@ def rest_or_slip(
     """Return the slip accelerations that begin at contacts without slip, shape (k,), 0 at rest.
 
     ``static`` and ``sliding``, shape (contacts, 2), are the largest forces against slip forward and backward. Static
-    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. Contacts
-    that can rest after all, because others slip, do so. Slip accelerations below ``noise`` count as zero.
+    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. As few of
+    these as possible slip in the end, because others can rest if some do not. Slip accelerations below ``noise``
+    count as zero.
     """
     count = len(sets.blocks)
     own = [np.linalg.norm(to_rates[rows, rows]) for rows in sets.blocks]
@@ -192,10 +196,14 @@ def rest_or_slip(
     slides = np.zeros(count, dtype=bool)
     while (found := slips(slides)[1] & ~slides).any():
         slides |= found
-    for i in np.flatnonzero(slides)[::-1] if slides.sum() > 1 and (static > sliding).any() else ():
-        others = slides & (np.arange(count) != i)
-        if not slips(others)[1][~others].any():
-            slides = others
+    chosen = np.flatnonzero(slides)
+    if len(chosen) > 1 and (static > sliding).any():
+        fewer = (subset for size in range(1, len(chosen)) for subset in combinations(chosen, size))
+        for subset in islice(fewer, SUBSETS):
+            others = np.isin(np.arange(count), subset, invert=True)
+            if not slips(~others)[1][others].any():
+                slides = ~others
+                break
     left, moves = slips(slides)
     for rows, moved in zip(sets.blocks, moves, strict=True):
         left[rows] *= moved
