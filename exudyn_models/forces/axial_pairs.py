@@ -18,7 +18,6 @@ from functools import cached_property, partial
 from operator import mul
 from typing import Any
 
-import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.any_pair import Parameters, contact_of, parameters_of
@@ -145,11 +144,9 @@ class AxialStick:
 
     ``reference``, shape (n,), contains the reference coordinates of both nodes, ``static_ratio`` is static divided by
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
-    ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
-    mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
-    axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points.
-    ``on_axis`` is False if the bodies can slide sideways. ``largest`` is the largest friction in the run. ``shared``
-    returns the moment of a contact at rest that others hold too; otherwise the constraint has the moment.
+    ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``point`` is the number of
+    a point, from 1, of a contact at several points. ``on_axis`` is False if the bodies can slide sideways.
+    ``largest`` is the largest friction in the run. ``holds`` returns the forces of a contact at rest along its locks.
     """
 
     kinds: Kinds
@@ -159,11 +156,10 @@ class AxialStick:
     locks: tuple[int, ...] = ()
     mode: Mode | None = None
     running: bool = False
-    idle: bool = False
     point: int | None = None
     on_axis: bool = True
     largest: float = 0.0
-    shared: Callable[[], float] | None = None
+    holds: Callable[[], FloatArray] | None = None
 
     @property
     def parts(self) -> Sequence[AxialStick]:
@@ -185,7 +181,7 @@ class AxialStick:
     @property
     def visible_mode(self) -> Mode:
         """Mode that a sensor shows."""
-        return Mode.LOCKED if self.idle or self.mode is None else self.mode
+        return Mode.LOCKED if self.mode is None else self.mode
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
         """Return the derivatives of S with respect to the nodes' velocities; ``q`` excludes reference values."""
@@ -249,26 +245,21 @@ class AxialStick:
         direction = int(self.mode or 0)
         return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
 
-    def held_moment(self, mbs: Any) -> float:
-        """Return the moment in N m of a contact at rest on the disc."""
-        if self.shared is not None:
-            return self.shared()
-        return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
+    def held_forces(self) -> FloatArray:
+        """Return the forces of a contact at rest along its locks, shape (k,)."""
+        return self.holds() if self.holds is not None else np.zeros(1)
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
         """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
-        moment = self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
+        moment = float(self.held_forces()[0]) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
         return np.array([0.0, 0.0, moment])
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return moment divided by capacity: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
-            return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))
+            held = float(self.held_forces()[0])
+            return abs(held) / max(self.limits(t)[held > 0.0], FREE * max(self.limits(t)))
         return 1.0 if self.slides else 0.0
-
-    def unused(self, limits: tuple[float, float], held: float) -> float:
-        """Return the share of the ``limits`` (N m) that a moment ``held`` (N m) leaves."""
-        return 1.0 - abs(held) / max(limits[held > 0.0], FREE * max(limits))
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         """Return the moments on the nodes (user function of the connector)."""

@@ -34,7 +34,7 @@ from exudyn_models.solver.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.stick.sticking_contacts import (
     ModeChange,
     StickingContact,
-    first_modes,
+    running,
     sticking_contacts,
 )
 from exudyn_models.solver.stick.switching import run_switching
@@ -91,7 +91,8 @@ def solve_dynamic(
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
     find_again(mbs)
-    contacts, changes = sticking_contacts(mbs, simulationSettings.timeIntegration.startTime), []
+    options, changes = simulationSettings.timeIntegration, list[ModeChange]()
+    contacts = sticking_contacts(mbs, options.startTime, options.endTime)
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
         modes: list[Mode] = []
         for goes_on in parts:
@@ -160,7 +161,7 @@ def _solve(
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
-            repairs.enter_context(first_modes(mbs, contacts, options.startTime))
+            repairs.enter_context(running(mbs, contacts))
             if solver in IMPLICIT:
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()

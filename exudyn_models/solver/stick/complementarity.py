@@ -1,12 +1,14 @@
-"""Forces of contacts at rest on axes, and the sharing of their loads.
+"""Forces of contacts at rest, and the sharing of their loads.
 
-The slip accelerations are r = g + A·f. The forces f minimise fᵀ·A·f/2 + gᵀ·f between the limits of static friction
+The slip accelerations are r = g + A·f. The forces f minimise fᵀ·A·f/2 + gᵀ·f within the limits of static friction
 (Pfeiffer & Glocker, Multibody Dynamics with Unilateral Contacts, 1996). A contact within its limits rests, and a
 contact at a limit may slip against its force. Redundant contacts share a load, and make A singular.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations, islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,15 @@ SLIPS = 1e-8
 
 DEPENDENT = 1e-9
 """Part of a gradient of slip, relative to its length in the metric of the mass, that other contacts do not hold."""
+
+SUBSETS = 64
+"""Largest number of sets of slipping contacts to try, beginning with the smallest."""
+
+PREFERRED = 1e3
+"""Factor on the independent part of preferred gradients; with a tiny part, forces on others would be large."""
+
+SMOOTH, CLOSE, ROUNDING = 1e-11, 1e-4, 1e-14
+"""Last share of a slip acceleration that smooths friction, and tolerances of forces and of rounding errors."""
 
 ACTIVE = 1e-9
 """Smallest multiplier of a share that determines the largest one."""
@@ -68,36 +79,135 @@ def bounded_forces(
     return forces, rates + to_rates @ forces
 
 
+Law = Callable[[FloatArray], tuple[float, FloatArray, FloatArray]]
+"""Support function P of slips at a contact in the plane, its gradient, and P times its second derivatives."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sets:
+    """Sets of friction of contacts: ``blocks`` of rows, and their laws; None is an interval on an axis."""
+
+    blocks: Sequence[slice]
+    laws: Sequence[Law | None]
+
+    def only(self, chosen: Sequence[int]) -> "Sets":
+        """Return the sets of chosen contacts, whose rows follow each other."""
+        counts = [self.blocks[i].stop - self.blocks[i].start for i in chosen]
+        ends = np.cumsum([0, *counts]).tolist()
+        return Sets([slice(*pair) for pair in pairwise(ends)], [self.laws[i] for i in chosen])
+
+    def sizes(self, slips: FloatArray) -> FloatArray:
+        """Return the size of the slip of each contact."""
+        pairs = zip(self.blocks, self.laws, strict=True)
+        return np.array([law(slips[rows])[0] if law else abs(slips[rows.start]) for rows, law in pairs])
+
+    def forces(
+        self, to_rates: FloatArray, rates: FloatArray, limits: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the forces, shape (k,), and the slip accelerations that they leave.
+
+        ``limits``, shape (contacts, 2), are the largest forces against slip forward and backward.
+        """
+        if not any(self.laws):
+            return bounded_forces(to_rates, rates, -limits[:, 0], limits[:, 1])
+        return self._smooth_forces(to_rates, rates, limits)
+
+    def _smooth_forces(
+        self, to_rates: FloatArray, rates: FloatArray, limits: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Do as ``forces``, by Newton's method for ½·fᵀ·A·f + Σ s·√(P(r)² + ε²), whose ε falls to ``SMOOTH``.
+
+        Each iteration for a smaller ε starts from an extrapolation.
+        """
+        middle, radii = (limits[:, 1] - limits[:, 0]) / 2.0, limits.mean(axis=1)
+        counts = [rows.stop - rows.start for rows in self.blocks]
+        shift = np.where(
+            np.repeat([law is None for law in self.laws], counts), np.repeat(middle, counts), 0.0
+        )
+        rates, size = rates + to_rates @ shift, np.repeat(radii, counts)
+        pairs = zip(self.blocks, radii, strict=True)
+        scales = np.array(
+            [max(np.linalg.norm(to_rates[b, b]) * s, np.linalg.norm(rates[b])) for b, s in pairs]
+        )
+        scales[scales == 0.0] = 1.0
+
+        def terms(z: FloatArray, share: float) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+            left, value = rates + to_rates @ z, 0.5 * z @ to_rates @ z
+            forces, slopes, by_share = np.zeros(len(z)), np.zeros_like(to_rates), np.zeros(len(z))
+            for rows, law, radius, scale in zip(self.blocks, self.laws, radii, scales, strict=True):
+                slip, smooth = left[rows], share * scale
+                size, gradient, curvature = (
+                    law(slip) if law else (abs(slip[0]), np.sign(slip), np.zeros((1, 1)))
+                )
+                root = math.hypot(size, smooth)
+                value += radius * root
+                forces[rows] = -radius * size / root * gradient
+                bent = np.outer(gradient, gradient) if size > 0.0 else np.eye(len(slip))
+                slopes[rows, rows] = radius / root * (bent * (smooth / root) ** 2 + curvature)
+                by_share[rows] = radius * scale * size * smooth / root**3 * gradient
+            return float(value), forces, slopes, np.asarray(by_share)
+
+        z, share, one = np.zeros(len(rates)), 1.0, np.eye(len(rates))
+        while True:
+            value, forces, slopes, by_share = terms(z, share)
+            for _ in range(100):
+                error = forces - z
+                if (np.abs(error) <= CLOSE * size).all():
+                    break
+                change, part = np.linalg.solve(one + slopes @ to_rates, error), 1.0
+                fall = 1e-4 * error @ to_rates @ change
+                while (found := terms(z + part * change, share))[0] > value - part * fall + ROUNDING * value:
+                    if part < 1e-6:
+                        break
+                    part /= 2.0
+                z = z + part * change
+                value, forces, slopes, by_share = found
+            if share <= SMOOTH:
+                return z + shift, rates + to_rates @ z
+            z = z + np.linalg.solve(one + slopes @ to_rates, by_share) * (0.1 - 1.0) * share
+            share *= 0.1
+
+
 def rest_or_slip(
     to_rates: FloatArray,
     rates: FloatArray,
     noise: FloatArray,
+    sets: Sets,
     static: FloatArray,
     sliding: FloatArray,
 ) -> FloatArray:
-    """Return the directions of the slip that begins at contacts without slip, shape (k,), 0 at rest.
+    """Return the slip accelerations that begin at contacts without slip, shape (k,), 0 at rest.
 
-    ``static`` and ``sliding``, shape (k, 2), are the largest forces against slip forward and backward. Static
-    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. Contacts
-    that can rest after all, because others slip, do so. Slip accelerations below ``noise`` count as zero.
+    ``static`` and ``sliding``, shape (contacts, 2), are the largest forces against slip forward and backward. Static
+    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. As few of
+    these as possible slip in the end, because others can rest if some do not. Slip accelerations below ``noise``
+    count as zero.
     """
+    count = len(sets.blocks)
+    own = [np.linalg.norm(to_rates[rows, rows]) for rows in sets.blocks]
+    least = np.maximum(SLIPS * np.maximum(own * static.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
 
-    def directions(slips: NDArray[np.bool_]) -> FloatArray:
-        low, high = np.where(slips, sliding.T, static.T) * [[-1.0], [1.0]]
-        forces, left = bounded_forces(to_rates, rates, low, high)
-        least = np.maximum(SLIPS * np.maximum(np.diag(to_rates) * static.max(axis=1), np.abs(rates)), noise)
-        edge = ACTIVE * (high - low)
-        pressed = np.where(forces <= low + edge, left > least, (forces >= high - edge) & (left < -least))
-        return np.where(pressed, np.sign(left), 0.0)
+    def slips(slides: NDArray[np.bool_]) -> tuple[FloatArray, NDArray[np.bool_]]:
+        limits = np.where(slides[:, None], sliding, static)
+        _, left = sets.forces(to_rates, rates, limits)
+        moves = sets.sizes(left) > least
+        return left, moves
 
-    slips = np.zeros(len(rates), dtype=bool)
-    while (found := (directions(slips) != 0.0) & ~slips).any():
-        slips |= found
-    for i in np.flatnonzero(slips)[::-1] if slips.sum() > 1 and (static > sliding).any() else ():
-        others = slips & (np.arange(len(slips)) != i)
-        if not directions(others)[~others].any():
-            slips = others
-    return directions(slips)
+    slides = np.zeros(count, dtype=bool)
+    while (found := slips(slides)[1] & ~slides).any():
+        slides |= found
+    chosen = np.flatnonzero(slides)
+    if len(chosen) > 1 and (static > sliding).any():
+        fewer = (subset for size in range(1, len(chosen)) for subset in combinations(chosen, size))
+        for subset in islice(fewer, SUBSETS):
+            others = np.isin(np.arange(count), subset, invert=True)
+            if not slips(~others)[1][others].any():
+                slides = ~others
+                break
+    left, moves = slips(slides)
+    for rows, moved in zip(sets.blocks, moves, strict=True):
+        left[rows] *= moved
+    return left
 
 
 def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[int], FloatArray]:
@@ -108,11 +218,17 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
     remaining contacts in their order.
     """
     rest, lengths = gram, np.diag(gram)
+    weights = np.zeros(len(gram))
+    np.divide(1.0, lengths, out=weights, where=lengths > 0.0)
+    weights[list(preferred)] *= PREFERRED
     chosen: list[int] = []
-    for i in (*preferred, *range(len(gram))):
-        if rest[i, i] > DEPENDENT * lengths[i]:
-            rest = rest - np.outer(rest[:, i], rest[i]) / rest[i, i]
-            chosen.append(i)
+    while len(gram):
+        i = int(np.argmax(np.diag(rest) * weights))
+        if rest[i, i] <= DEPENDENT * lengths[i]:
+            break
+        rest = rest - np.outer(rest[:, i], rest[i]) / rest[i, i]
+        chosen.append(i)
+        weights[i] = 0.0
     chosen.sort()
     others = [i for i in range(len(gram)) if i not in chosen]
     if not chosen or not others:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.starting_rates import initialised_solver
 from reference_model.systems import FloatArray
 
@@ -21,6 +22,9 @@ SINGULAR = 1e10
 
 LIGHT = 1e-7
 """Largest mass of an Euler parameter, relative to its coupling with others, that may be a rounding error."""
+
+CONSISTENT = 1e-6
+"""Largest violation of a constraint by velocities, relative to the terms in its sum."""
 
 KEPT = 8
 """Number of inverses to keep; rotors need only one for each set of constraints."""
@@ -57,7 +61,7 @@ class Dynamics:
             solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
             solver.ComputeJacobianAE(self._mbs, 1.0, 1.0, 1.0)
             self.gradients = np.array(solver.GetSystemJacobian())[-self._count :, :size]
-            self.rates = self._prescribed_rates(t)
+            self.rates = self._prescribed_rates(t) if self.gradients.any() else np.zeros(self._count)
         key = self.mass.tobytes(), self.gradients.tobytes()
         if key not in self._inverses:
             if len(self._inverses) == KEPT:
@@ -73,12 +77,41 @@ class Dynamics:
         for i in range(4):
             data.SetODE2Coordinates(q + i * self.difference * velocities)
             data.SetTime(t + i * self.difference)
-            self._solver.ComputeAlgebraicEquations(self._mbs, True)
-            slips.append(np.array(self._solver.GetSystemResidual())[-self._count :])
+            slips.append(self._slips_of_constraints())
         data.SetODE2Coordinates(q)
         data.SetTime(t)
         rates = np.array([11.0, -18.0, 9.0, -2.0]) @ np.array(slips) / (6.0 * self.difference)
         return np.where(self.gradients.any(axis=1), rates, 0.0)
+
+    def _slips_of_constraints(self) -> FloatArray:
+        self._solver.ComputeAlgebraicEquations(self._mbs, True)
+        return np.array(self._solver.GetSystemResidual())[-self._count :]
+
+    def prescribed_speeds(self, times: FloatArray) -> FloatArray:
+        """Return the speeds that constraints prescribe at ``times`` in s, shape (len(times), m)."""
+        data = self._data
+        velocities, now = data.GetODE2Coordinates_t(), data.GetTime(CURRENT)
+        data.SetODE2Coordinates_t(np.zeros(self._size))
+        speeds = []
+        for t in times:
+            data.SetTime(t)
+            speeds.append(-self._slips_of_constraints())
+        data.SetODE2Coordinates_t(velocities)
+        data.SetTime(now)
+        return np.array(speeds)
+
+    def violation(self) -> FloatArray:
+        """Return the change of the velocities, shape (n,), that lets them satisfy all constraints, or zeros.
+
+        Bodies change their velocities as by an impact of these constraints.
+        """
+        if not self.gradients.any():
+            return np.zeros(self._size)
+        slips = self._slips_of_constraints()
+        rounding = CONSISTENT * np.abs(self.gradients) @ np.abs(self._data.GetODE2Coordinates_t())
+        if (np.abs(slips) <= rounding).all():
+            return np.zeros(self._size)
+        return self.inverse[: self._size, self._size :] @ -slips
 
     def _coordinate_rates(self) -> FloatArray:
         """Return the derivatives of the coordinates; those of rotation vectors v are not the velocities ω.
@@ -117,22 +150,25 @@ def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
 
     If constraints depend on each other, it is the pseudoinverse of the scaled equations, whose forces are smallest.
     """
-    size, count = len(mass), len(gradients)
-    scale = np.ones(size + count)
-    scale[:size] = np.sqrt(mobilities(mass))
-    lengths = np.linalg.norm(gradients * scale[:size], axis=1)
-    active = lengths > 0.0
-    scale[size:][active] = 1.0 / lengths[active]
-    system = np.diag(np.concatenate((np.zeros(size), ~active)))
-    system[:size, :size], system[size:, :size], system[:size, size:] = mass, gradients, gradients.T
-    system *= scale[:, None] * scale
+    active = gradients.any(axis=1)
+    scale = np.sqrt(mobilities(mass))
+    slips = gradients[active] * scale
+    lengths = np.linalg.norm(slips, axis=1)
+    slips /= lengths[:, None]
+    size, masses = len(mass), scale[:, None] * mass * scale
+    system = np.zeros((size + len(slips), size + len(slips)))
+    system[:size, :size], system[size:, :size], system[:size, size:] = masses, slips, slips.T
     try:
-        inverse = np.linalg.inv(system)
+        found = np.linalg.inv(system)
     except np.linalg.LinAlgError:
-        inverse = np.full((1, 1), np.inf)
-    if not np.abs(inverse).max(initial=0.0) < SINGULAR:
-        inverse = np.linalg.pinv(system, rcond=1.0 / SINGULAR, hermitian=True)
-    return np.asarray(scale[:, None] * inverse * scale)
+        found = np.full((1, 1), np.inf)
+    if not np.abs(found).max(initial=0.0) < SINGULAR:
+        found = np.linalg.pinv(system, rcond=1.0 / SINGULAR, hermitian=True)
+    places = np.concatenate((np.ones(size, dtype=bool), active))
+    scale = np.concatenate((scale, 1.0 / lengths))
+    inverse = np.zeros((len(places), len(places)))
+    inverse[np.ix_(places, places)] = scale[:, None] * found * scale
+    return inverse
 
 
 def mobilities(mass: FloatArray) -> FloatArray:

@@ -1,27 +1,40 @@
-"""Modes that let all contacts of a model obey Coulomb's law at one time of a run.
+"""Modes that let all contacts of a model obey Coulomb's law at one time of a run, and the margins of these modes.
 
-Contacts on axes solve one problem together (``complementarity``). A contact in the plane begins to slide normal to
-the limit surface, with the slip that its load reaches within a millionth of a step or Newton's method can resolve.
-``take_back`` removes this slip when the contact slides faster.
+All contacts solve one problem together (``complementarity``). A contact in the plane begins to slide with a slip that
+its acceleration reaches within a millionth of a step, or that Newton's method can resolve. ``take_back`` removes this
+slip when the contact slides faster.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import exudyn as exu
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.forces.axial_pairs import Mode
+from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.stick.complementarity import rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.locked_contacts import LockedContacts, undecided
-from exudyn_models.solver.stick.resting_axes import RestingAxes
+from exudyn_models.solver.stick.resting import Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
-from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
-from exudyn_models.solver.stick.sticking_contacts import STILL, PlanarContact, StickingContact
+from exudyn_models.solver.stick.slip_motion import RESOLVED
+from exudyn_models.solver.stick.slips import Slips
+from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
+from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
-ROUNDING = 1e-12
-"""Relative rounding error of the load of a locked contact."""
+SETTLED = 1e-10
+"""Largest relative change of settled forces."""
+
+ITERATIONS = 200
+"""Largest number of iterations for loads that depend on constraint forces."""
+
+SHRUNK = 1e-6
+"""Relative reduction of the capacities of contacts that cannot hold their load any more, so some release."""
+
+NEAR = 0.02
+"""Unused share of capacity below which loads are computed again, because those of Exudyn's steps contain errors."""
 
 GROWN = 10.0
 """Least slip for ``take_back``, relative to the first slip."""
@@ -41,30 +54,24 @@ class ModeChoice:
         slides: SlidingSteps,
         step: float,
     ) -> None:
-        self._mbs, self._contacts, self._slides = mbs, contacts, slides
-        self._step, self._dynamics = step, Dynamics(mbs, t, step)
+        self._mbs, self._data, self._contacts, self._slides = mbs, mbs.systemData, contacts, slides
+        self._step, self._dynamics, self._resting = step, Dynamics(mbs, t, step), Resting(mbs)
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        on_axes = [contact for contact in contacts if not isinstance(contact, PlanarContact)]
-        self._axes = RestingAxes(mbs, self._dynamics, on_axes, contacts, step)
-        self._dynamics.evaluate(t)
-        self._locked = LockedContacts(mbs, self._dynamics, contacts)
+        locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
+        self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
+        self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
+        self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
+        self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
-    def survey(self, t: float) -> None:
-        """Find the directions of slip that joints and locks hold."""
-        if self._planar:  # slip on one axis has a constant direction
-            self._dynamics.evaluate(t)
-            self._locked = LockedContacts(self._mbs, self._dynamics, self._contacts)
-
-    def passes(self, contact: PlanarContact, motion: SlipMotion) -> bool:
-        """Return whether a slip may only pass through zero, after ``survey``."""
-        return self._locked.passes(contact, motion)
-
-    def begin(self) -> None:
-        """Remove the slip of contacts that start locked."""
-        for contact in self._planar:
-            if contact.mode == Mode.LOCKED:
-                self._locked.set_slip(contact, np.zeros(3))
+    def begin(self, t: float) -> None:
+        """Let velocities satisfy all joints, by an impact without friction."""
+        initial = exu.ConfigurationType.Initial
+        self._load()
+        self._dynamics.evaluate(t)
+        change = self._dynamics.violation()
+        if change.any():
+            self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t(initial) + change, initial)
 
     def take_back(self, t: float) -> None:
         """Subtract the first slip of contacts that slide much faster at the time t (s).
@@ -77,122 +84,213 @@ class ModeChoice:
                 continue
             del self._first_slips[contact]
             if contact.free_to_slide:
-                self.survey(t)
-                self._locked.set_slip(contact, (1.0 - first / motion.potential) * motion.slip)
+                self._dynamics.evaluate(t)
+                slips = Slips(self._mbs, self._dynamics, [contact])
+                slips.give(dict(enumerate((1.0 - first / motion.potential) * slips.now())), [])
         self._slides.starts = bool(self._first_slips)
 
-    def margins(self, t: float) -> list[float]:
-        """Return the margins of all contacts, after redistributing loads that would end a rest."""
-        planar = [contact.margin(self._mbs, t) for contact in self._planar]
-        if planar and min(planar) < 0.0 and self._locked.balance(t):
-            planar = [contact.margin(self._mbs, t) for contact in self._planar]
-        own = self._axes.margins(t)
-        own.update(zip(self._planar, planar, strict=True))
-        return [own[contact] for contact in self._contacts]
-
-    def end(self, t: float, ended: Sequence[StickingContact]) -> None:
-        """Leave the modes that end at the time t (s)."""
-        following: dict[PlanarContact, Mode] = {
-            contact: contact.following(self._mbs, t) for contact in self._planar if contact in ended
-        }
-        self._axes.end(ended)
-        self.survey(t)
-        released = False  # ``settle`` decides about others that share its load
-        for contact, mode in following.items():
-            if mode == Mode.OPEN or not released:
-                self._leave(t, contact, mode)
-            released |= mode != Mode.OPEN
-
-    def _leave(self, t: float, contact: PlanarContact, mode: Mode) -> None:
-        """Let a contact enter its next mode; if several share a load, the most loaded one."""
-        if contact.planar.rests and mode != Mode.OPEN:
-            locked = [one for one in self._planar if one.mode == Mode.LOCKED]
-            contact = self._most_loaded(t, locked or [contact])
-            mode = contact.driven(self._mbs)
-        self.enter(t, contact, mode)
+    def end(self, ended: Iterable[StickingContact]) -> None:
+        """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
+        self._ended = self._resting.share([one for one in ended if one.mode != Mode.OPEN])
+        self._overloaded = {contact for contact in self._ended if contact.mode == Mode.LOCKED}
+        self._slipped = set()
 
     def settle(self, t: float) -> None:
-        """Choose modes that let all contacts obey Coulomb's law, and store accelerations and constraint forces."""
-        self._locked.share_directions()
+        """Choose the modes, and store accelerations and constraint forces.
+
+        Until ``end``, contacts that have begun to slip have sliding friction, even if others change their modes.
+        """
+        self._load()
+        for contact in self._contacts:
+            contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
-            contact.stick.idle = False
-            if contact.mode == Mode.LOCKED and self._locked.is_held(contact):
-                contact.enter(self._mbs, Mode.FORWARD)
-        for _ in range(MOST_CHANGES):
-            self._locked.share_directions()
-            held = [contact.stick.slides and self._locked.is_held(contact) for contact in self._planar]
-            if any(held):
-                self._axes.accelerate(t)
-            for contact, is_held in zip(self._planar, held, strict=True):
-                contact.hold(self._mbs, is_held)
-                contact.planar.taken_over = np.zeros(3)  # other contacts may rest now
-            shared = self._held_from_the_plane()
-            self._axes.settle(t)
-            if any(contact.stick.slides for contact in shared):
-                raise undecided(t)
-            chosen = self._contradiction(t)
-            if chosen is None:
-                self._slides.survey()
-                self._axes.end(())
+            contact.motion(self._mbs)
+        self._dynamics.evaluate(t)
+        slips = Slips(self._mbs, self._dynamics, self._contacts)
+        limits = np.array([contact.holding(t) for contact in self._contacts])
+        bounds = slips.bounds(self._present()[1], limits)
+        still = slips.sets.sizes(slips.now()) <= slips.still(self._step, bounds)
+        modes = [
+            Mode.LOCKED if at_rest or contact in self._ended else contact.sliding_mode(slips.now()[rows])
+            for contact, at_rest, rows in zip(self._contacts, still, slips.sets.blocks, strict=True)
+        ]
+        self._iterate(t, lambda: self._choose(t, slips, modes, bounds))
+        self._slipped.update(
+            contact
+            for contact, mode in zip(self._contacts, modes, strict=True)
+            if mode == Mode.LOCKED and contact.stick.slides
+        )
+        for contact, rows in zip(self._contacts, slips.sets.blocks, strict=True):
+            if contact.mode == Mode.LOCKED:
+                contact.enter(
+                    self._mbs,
+                    Mode.LOCKED,
+                    [i - rows.start for i in self._resting.rows if i in range(len(slips.rows))[rows]],
+                )
+        firsts = [rows.start for rows in slips.sets.blocks]
+        self._rows = slips.rows[firsts]
+        self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
+        self._offsets = 1.0 - np.abs(self._directions)
+        self._limits = np.array([contact.capacities(t) for contact in self._contacts])
+        self.survey(t)
+        self._slides.survey()
+        self.end(())
+
+    def survey(self, t: float) -> None:
+        """Find the slips that joints and locks allow at sliding contacts in the plane."""
+        if sliding := [contact for contact in self._planar if contact.stick.slides]:
+            self._dynamics.evaluate(t)
+            Slips(self._mbs, self._dynamics, sliding)
+
+    def _load(self) -> None:
+        self._data.SetSystemState(self._data.GetSystemState(exu.ConfigurationType.Initial), CURRENT)
+
+    def _present(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return generalised forces, accelerations and constraint forces of the present modes."""
+        forces = self._dynamics.forces()
+        return forces, *self._dynamics.solution(forces)
+
+    def _iterate(
+        self,
+        t: float,
+        solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
+        configurations: Sequence[Any] = (CURRENT, exu.ConfigurationType.Initial),
+    ) -> None:
+        """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
+        holding = [contact.holding(t) for contact in self._contacts]
+        for _ in range(ITERATIONS):
+            forces, accelerations, constraints = solve()
+            before = np.concatenate((forces, holding))
+            self._dynamics.store(accelerations, constraints, configurations)
+            holding = [contact.holding(t) for contact in self._contacts]
+            now = np.concatenate((self._dynamics.forces(), holding))
+            if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
                 return
-            self._leave(t, *chosen)
         raise SimulationError(
-            f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s"
+            f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s: loads that depend "
+            "on constraint forces do not settle"
         )
 
-    def _held_from_the_plane(self) -> list[StickingContact]:
-        """Return the contacts at rest on axes that contacts in the plane hold as well."""
-        return [
-            contact
-            for contact in self._contacts
-            if contact.mode == Mode.LOCKED
-            and not isinstance(contact, PlanarContact)
-            and self._locked.is_held_from_the_plane(contact)
-        ]
+    def _choose(
+        self, t: float, slips: Slips, modes: Sequence[Mode], bounds: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Enter the modes under the present loads; return these, accelerations and constraint forces."""
+        contacts, blocks = self._contacts, slips.sets.blocks
+        for contact, mode in zip(contacts, modes, strict=True):
+            contact.enter(self._mbs, Mode.OPEN if contact.holding(t) == 0.0 else mode)
+        still = [i for i, contact in enumerate(contacts) if contact.mode == Mode.LOCKED]
+        _, accelerations, _ = self._present()
+        found = self._slips_that_begin(t, slips, still, accelerations)
+        wanted, first, begun = dict[int, float](), list[int](), list[int]()
+        for i in still:
+            contact, slip, own = contacts[i], found[blocks[i]], range(len(found))[blocks[i]]
+            if not slip.any():
+                wanted.update(dict.fromkeys(own, 0.0))
+                first += own
+            elif isinstance(contact, PlanarContact):
+                contact.planar.direction = np.zeros(3)
+                contact.planar.direction[: len(slip)] = (
+                    slip / contact.planar.scales / slips.sets.sizes(found)[i]
+                )
+                begun.append(i)
+            elif slip[0] * slips.now()[own[0]] < 0.0:  # a rounding error
+                wanted[own[0]] = 0.0
+        wanted |= self._first_slips_of(begun, slips, found, bounds)
+        resting = [i for i in still if not found[blocks[i]].any()]
+        for i in still:
+            if i not in resting:
+                contacts[i].enter(self._mbs, contacts[i].sliding_mode(found[blocks[i]]))
+        self._resting.divide(contacts, slips, resting, self._places, self._resting.rows)
+        slips.give(wanted, first)
+        forces = self._dynamics.forces()
+        held, accelerations, constraints = slips.hold(self._resting.rows, forces)
+        constraints[self._resting.places] = -held
+        return forces, accelerations, constraints
 
-    def enter(self, t: float, contact: PlanarContact, mode: Mode) -> None:
-        """Switch the mode of a contact in the plane at the time t (s), and set its slip."""
-        released = contact.mode == Mode.LOCKED and mode != Mode.OPEN
-        if not (released or mode == Mode.LOCKED):
-            contact.enter(self._mbs, mode)
-            return
-        slip = np.zeros(3)
-        if released:
-            contact.enter(self._mbs, Mode.OPEN)
-            self._locked.share_directions()
-            self._axes.accelerate(t)
-            free = contact.motion(self._mbs)
-            shortest = contact.rest_share * self._step
-            speed = 2.0 * max(shortest * free.rate_potential, RESOLVED * free.largest_term)
-            slip = speed * contact.planar.direction
-            self._slides.begin(max(shortest, speed / free.rate_potential))
-            self._first_slips[contact] = speed
-        contact.enter(self._mbs, Mode.OPEN)
-        self._locked.set_slip(contact, slip)
-        contact.enter(self._mbs, mode)
+    def _slips_that_begin(
+        self, t: float, slips: Slips, still: Sequence[int], accelerations: FloatArray
+    ) -> FloatArray:
+        """Return the slip accelerations of the contacts ``still``, and zero for others."""
+        contacts = [self._contacts[i] for i in still]
+        rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
+        static = np.array([contact.capacities(t) for contact in contacts]).reshape(-1, 2)
+        ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
+        overloads = np.array([contact in self._overloaded for contact in contacts])
+        shrunk = (SHRUNK * overloads * static.max(axis=1, initial=0.0))[:, None]
+        sliding = np.minimum(static - shrunk, static / ratios)
+        slipped = np.array([contact in self._slipped for contact in contacts], dtype=bool)[:, None]
+        found = np.zeros(len(slips.rows))
+        found[rows] = rest_or_slip(
+            slips.to_rates[np.ix_(rows, rows)],
+            slips.rates(accelerations)[rows],
+            slips.noise(accelerations)[rows],
+            slips.sets.only(still),
+            np.where(slipped, sliding, static - shrunk),
+            sliding,
+        )
+        return found
 
-    def _contradiction(self, t: float) -> tuple[PlanarContact, Mode] | None:
-        """Return a contact in the plane that violates Coulomb's law, and its next mode.
+    def _first_slips_of(
+        self, begun: Sequence[int], slips: Slips, found: FloatArray, bounds: FloatArray
+    ) -> dict[int, float]:
+        """Return the slips of the rows of contacts in the plane that begin to slide, in proportion if linked."""
+        if not begun:
+            return {}
+        sizes, blocks = slips.sets.sizes(found), slips.sets.blocks
+        shortest = RESOLVED * self._step
+        speeds = 2.0 * np.maximum(shortest * bounds, RESOLVED * slips.terms())
+        links = [[slips.to_rates[blocks[i], blocks[j]].any() for j in begun] for i in begun]
+        count, of_group = connected_components(np.array(links, float), directed=False)
+        wanted: dict[int, float] = {}
+        for number in range(count):
+            group = [begun[k] for k in np.flatnonzero(of_group == number).tolist()]
+            time = max(speeds[i] / sizes[i] for i in group)
+            for i in group:
+                contact = self._contacts[i]
+                assert isinstance(contact, PlanarContact)
+                self._first_slips[contact] = float(time * sizes[i])
+                self._slides.begin(max(shortest, float(speeds[i] / bounds[i])))
+                wanted.update((row, float(time * found[row])) for row in range(len(found))[blocks[i]])
+        return wanted
 
-        Opening and closing come first, then the most overloaded locked contact, then contacts that reverse.
+    def margins(self, t: float) -> FloatArray:
+        """Return numbers that fall below zero when the present modes end, shape (contacts,).
+
+        They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
+        rest, or ±1 without load or coefficient.
         """
-        mbs = self._mbs
-        for contact in self._planar:
-            if contact.opens_or_closes(contact.holding(t)):
-                return contact, contact.following(mbs, t)
-            if contact.carried(mbs)[1] > STILL:
-                return contact, contact.driven(mbs)
-        if not self._planar:
-            return None
-        most = self._most_loaded(t, self._planar)
-        if most.overload(mbs, t) > 1.0 + ROUNDING and self._locked.balance(t):
-            most = self._most_loaded(t, self._planar)
-        if most.overload(mbs, t) > 1.0 + ROUNDING:
-            return most, most.driven(mbs)
-        for contact in self._planar:
-            if contact.reverses(mbs, contact.rest_share * self._step) and not self._locked.is_held(contact):
-                return contact, Mode.LOCKED
-        return None
+        slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
+        margins: FloatArray = self._offsets + self._directions * slips
+        for i in self._varying:
+            margins[i] = self._contacts[i].margin(self._mbs, t)
+            self._limits[i] = self._contacts[i].capacities(t)
+        left = self._left(t)
+        least = left.min(initial=1.0)
+        if least < NEAR:
+            before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
+            self._dynamics.evaluate(t)
+            self._iterate(t, self._present, (CURRENT,))
+            left = self._left(t)
+            if least < -1.0 and left.min() > 0.0:
+                raise SimulationError(
+                    f"a locked contact held {1.0 - least:.3g} times its capacity in a step, but not at its end t = "
+                    f"{t:.9g} s: a speed that a constraint prescribes jumps there; pass this time in breaks"
+                )
+            self._data.SetAECoordinates(before[0])
+            self._data.SetODE2Coordinates_tt(before[1])
+        return np.minimum(margins, left)
 
-    def _most_loaded(self, t: float, contacts: Sequence[PlanarContact]) -> PlanarContact:
-        return max(contacts, key=lambda contact: contact.overload(self._mbs, t))
+    def _left(self, t: float) -> FloatArray:
+        """Return the unused shares of capacities, 1 in slip; that of a one-way clutch is continuous."""
+        left = np.ones(len(self._contacts))
+        resting = self._resting
+        if resting.alone:
+            limits = self._limits[resting.alone]
+            held = self._data.GetAECoordinates()[resting.alone_places]
+            unused = np.minimum(limits[:, 1] + held, limits[:, 0] - held)
+            left[resting.alone] = unused / np.maximum(limits[:, 0], limits[:, 1])
+        for group in resting.groups:
+            share = max(1.0 - group.forces(t, 1.0 - NEAR)[1], -1.0)
+            for contact in group.contacts:
+                left[self._contacts.index(contact)] = share
+        return left

@@ -4,9 +4,8 @@ In stick, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their
 friction, must stay within the limit surface. A sliding contact obeys Coulomb's law without regularisation, so
 ``stick.switching`` lets no step pass its rest.
 
-Joints may leave only some directions of slip. With their basis B, shape (3, k), the slip is B·v, and the constraints
-are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share lies within the
-limit surface of the potential P(B·v).
+Joints may leave only some directions of slip, with the basis B, shape (3, k). The joints carry an undetermined share
+of the load, so the contact holds if any share lies within the limit surface of the potential P(B·v).
 """
 
 import math
@@ -14,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
@@ -23,6 +21,7 @@ from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
     linear_friction,
+    potential_terms,
     resisted_slip,
     slip_motion,
     unit_friction,
@@ -33,31 +32,19 @@ NEGLIGIBLE = 1e-9
 """Largest singular value of possible slips, or change of a direction, that counts as zero."""
 
 
-SPIN = np.array([[0.0], [0.0], [1.0]])
-"""Basis of the slip on one axis."""
-
-
 @dataclass(eq=False)
 class PlanarStick(AxialStick):
     """Friction between two bodies that sticks exactly; joints may hold them on one axis.
 
-    Its locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``, shape (3, k); joints leave those in
-    ``allowed`` free. ``direction``, shape (3,), is the slip at its release, normal to the limit surface, with P = 1
-    m/s.
+    Its locks hold the directions of slip (m/s): those of x and y and of the rim, or of the spin (rad/s) on one axis.
+    Joints, and locks of others while it slides, leave the slips (m/s, m/s, rad/s) in ``allowed``, shape (3, k), free.
+    ``direction``, shape (3,), is the slip at its release with P = 1 m/s.
     """
 
-    basis: FloatArray = field(default_factory=lambda: SPIN)
-    allowed: FloatArray = field(default_factory=lambda: SPIN)
+    allowed: FloatArray = field(default_factory=lambda: np.empty((3, 0)))
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
-    taken_over: FloatArray = field(default_factory=lambda: np.zeros(3))
-    """Force (N) and moment (N m) on the disc that the contact takes over from others on the same bodies.
-
-    Their sum over these contacts is zero, so they change no motion.
-    """
     radius: float = 0.0
     """Distance of the disc's centre from the master's axis in m, constant in stick."""
-    held: bool = False
-    """True if joints or other contacts determine the slip of this sliding contact."""
     frozen: bool = False
     """True in the last step before rest: friction keeps its value from the start of the step."""
     predicts: bool = False
@@ -67,7 +54,7 @@ class PlanarStick(AxialStick):
     """
 
     def __post_init__(self) -> None:
-        self.set_basis(self.basis)
+        self._evaluated: tuple[list[float], FloatArray] = [], np.empty((0, 0))
         self.renew()
 
     def renew(self) -> None:
@@ -79,22 +66,10 @@ class PlanarStick(AxialStick):
         """Largest number of constraints that hold the contact."""
         return 3 if self.mean_radius > 0.0 else 2
 
-    def span(self, slips: FloatArray) -> FloatArray:
-        """Return a basis of ``slips``, shape (3, n); a pin does not resist spin."""
-        radius = self.mean_radius
-        axes, sizes, _ = np.linalg.svd(slips * np.array([1.0, 1.0, radius])[:, None])
-        count = np.count_nonzero(sizes > NEGLIGIBLE)
-        return np.asarray(axes[:, :count] / np.array([1.0, 1.0, radius or 1.0])[:, None])
-
-    def set_basis(self, basis: FloatArray) -> None:
-        """Lock the directions of slip in ``basis``, shape (3, k)."""
-        self.basis, self._to_basis = basis, np.linalg.pinv(basis)
-        self._evaluated: tuple[list[float], FloatArray] = [], np.empty((3, 0))
-
     @property
-    def rests(self) -> bool:
-        """True if this contact or others hold its slip."""
-        return self.idle or self.mode == Mode.LOCKED
+    def scales(self) -> FloatArray:
+        """Lengths in m, or 1, that turn a slip into one along the directions of its locks, shape (k,)."""
+        return np.array([1.0, 1.0, self.mean_radius])[: self.most_locks]
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradients of the locked slips, shape (k, n)."""
@@ -102,7 +77,7 @@ class PlanarStick(AxialStick):
 
     def to_locked(self, coordinates: FloatArray) -> FloatArray:
         """Return the map from the slip to the slips that locks hold, shape (k, 3)."""
-        return np.asarray(self._to_basis)
+        return np.eye(3)[2:] if self.on_axis else np.diag([1.0, 1.0, self.mean_radius])[: self.most_locks]
 
     def gradient(self, q: Any) -> list[float]:
         """Return the gradient of the slip on one axis."""
@@ -126,21 +101,29 @@ class PlanarStick(AxialStick):
         """Return the rates of the locked slips without accelerations, shape (k,)."""
         return np.asarray(self.to_locked(self.reference + state[0]) @ self.motion(*state).bias)
 
+    def potential_along_locks(self, slip: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        """Return P (m/s) of a slip along the directions of the locks, shape (k,), its gradient and curvature."""
+        whole, count = np.zeros(3), len(slip)
+        whole[:count] = slip / self.scales
+        potential, gradient, curvature = potential_terms(whole, self.factors.geometry)
+        scales = self.scales
+        return potential, gradient[:count] / scales, curvature[:count, :count] / np.outer(scales, scales)
+
     def potential_of(self, slip: FloatArray) -> float:
         """Return P in m/s."""
         return float(-np.array(unit_friction(slip, self.factors.geometry)) @ slip)
 
-    def held_wrench(self, mbs: Any) -> FloatArray:
+    def held_wrench(self) -> FloatArray:
         """Return force (N) and moment (N m) on the disc at rest, in the master's axes, shape (3,)."""
-        if self.mode != Mode.LOCKED:
-            return self.taken_over
-        count = self.basis.shape[1]
-        forces = [mbs.GetObjectOutput(lock, exu.OutputVariableType.Force) for lock in self.locks[:count]]
-        return np.asarray(self.taken_over - self._to_basis.T @ np.array(forces, dtype=float))
+        wrench = np.zeros(3)
+        wrench[: self.most_locks] = self.scales * self.held_forces()
+        return wrench
 
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
         """Return the share of ``friction`` (N) that a ``wrench`` needs, and the resisted slip with P = 1 m/s."""
         contact, radius, load, columns = self.factors.geometry, self.mean_radius, -wrench, self.allowed
+        if columns.shape[1] == 0:
+            return 0.0, np.zeros(3)
         if columns.shape[1] == self.most_locks:  # the slip of the centre has the direction of the force
             force = math.hypot(load[0], load[1])
             along = [load[0] / force, load[1] / force, 0.0] if force else [1.0, 0.0, 0.0]
@@ -158,23 +141,23 @@ class PlanarStick(AxialStick):
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return load divided by capacity: 1 while the contact slides, 0 while it is open."""
-        if self.on_axis or not self.rests:
+        if self.on_axis or self.mode != Mode.LOCKED:
             return super().capacity_share(mbs, t)
-        return self.load_share(self.held_wrench(mbs), self.holding_force(t))[0]
+        return self.load_share(self.held_wrench(), self.holding_force(t))[0]
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
         """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
         if self.on_axis:
             return super().wrench(mbs, t, slip, radius, angle)
-        if self.rests:
-            return self.held_wrench(mbs)
+        if self.mode == Mode.LOCKED:
+            return self.held_wrench()
         return self.sliding_wrench(t, slip, radius) if self.slides else np.zeros(3)
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Any:
         """Return the generalised forces on the nodes (user function of the connector)."""
         if self.on_axis or not self.running:
             return super().force(mbs, t, item, q, q_t)
-        if not self.slides or self.idle:
+        if not self.slides:
             return [0.0] * len(q)
         if not self.predicts and not self.frozen:
             return self._sliding[0](mbs, t, item, q, q_t)
@@ -182,7 +165,7 @@ class PlanarStick(AxialStick):
 
     def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
         """Prepare the first iteration of a step."""
-        self.predicts = self.slides and not self.idle
+        self.predicts = self.slides
         if self.predicts:
             start = self.motion(q, q_t, np.zeros(len(q)))
             # A prescribed motion begins without slip.
@@ -228,7 +211,7 @@ class PlanarStick(AxialStick):
         """Return the derivatives of minus the forces (user function of the connector)."""
         if self.on_axis:
             return super().jacobian(mbs, t, item, q, q_t, position_factor, velocity_factor)
-        if self.idle or not self.slides:
+        if not self.slides:
             return np.zeros((len(q), len(q)))
         if self.predicts or self.frozen:
             self.predicts = False
@@ -253,7 +236,5 @@ class PlanarStick(AxialStick):
 
     def _row(self, lock: int, q: Sequence[float]) -> FloatArray:
         if q != self._evaluated[0]:  # Exudyn asks for one row after another
-            rows = np.zeros((3, len(q)))
-            rows[: self.basis.shape[1]] = self.rows(np.array(q))
-            self._evaluated = list(q), rows
+            self._evaluated = list(q), self.rows(np.array(q))
         return np.asarray(self._evaluated[1][lock])

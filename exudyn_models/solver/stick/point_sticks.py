@@ -15,13 +15,11 @@ from itertools import islice
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.forces.laws.places import places_in, slip_maps
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Kinds, slip_and_place_of_nodes
-from exudyn_models.solver.stick.locked_contacts import least_maximum
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray
 
@@ -151,26 +149,5 @@ class PointSticks(AxialStick):
         return np.asarray(np.einsum("pij,pi->j", maps, forces))
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
-        """Return the smallest share of capacity that holds the load at the points, or 1 if a point slides."""
-        if self.whole.on_axis:
-            return self.whole.capacity_share(mbs, t)
-        mode = self.visible_mode
-        if mode != Mode.LOCKED:
-            return 0.0 if mode == Mode.OPEN else 1.0
-        maps = slip_maps(self.factors.geometry[-1], angle)
-        held = np.array([point.held_wrench(mbs)[:2] for point in self.points])
-        capacities = np.array([point.holding_force(t) for point in self.points])
-        closed = capacities > 0.0
-        held, capacities = held[closed], capacities[closed]
-        undetermined = scipy.linalg.null_space(maps[closed].reshape(-1, 3).T)
-        undetermined = undetermined.reshape(*held.shape, -1)
-
-        def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-            forces = held + undetermined @ x
-            sizes = np.linalg.norm(forces, axis=1)
-            directions = forces / np.where(sizes > 0.0, sizes, 1.0)[:, None]
-            slopes = np.einsum("pi,pik->pk", directions, undetermined)
-            return sizes / capacities, slopes / capacities[:, None]
-
-        size = undetermined.shape[-1]
-        return float(np.max(shares(least_maximum(shares, size) if size else np.zeros(0))[0]))
+        """Return the largest share of capacity of a point."""
+        return max(part.capacity_share(mbs, t) for part in self.active)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
+from exudyn_models.solver.stick.slip_motion import SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact
 from reference_model.systems import FloatArray
 
@@ -48,12 +48,7 @@ class SlidingSteps:
 
     def stops(self, contact: PlanarContact, motion: SlipMotion) -> bool:
         """Return whether the shortest step might end without slip."""
-        return motion.rests_within(contact.rest_share * self._step / APPROACH)
-
-    def beyond(self, motion: SlipMotion) -> float:
-        """Return the time (s) after a rest until the slip is large enough to have a direction."""
-        shortest = PlanarContact.rest_share * self._step
-        return max(shortest, 2.0 * RESOLVED * motion.largest_term / motion.rate_potential)
+        return motion.rests_within(contact.resolution * self._step / APPROACH)
 
     def resolves(self, step: float) -> bool:
         """Return whether a ``step`` (s) was short enough, and choose the next one."""
@@ -85,7 +80,7 @@ class SlidingSteps:
                 motion = contact.slid(self._mbs)
                 if motion.potential > 0.0:  # a prescribed motion begins without slip
                     self._directions[contact] = contact.scaled(motion.gradient)
-                shortest = contact.rest_share * self._step
+                shortest = contact.resolution * self._step
                 self.rests |= self.stops(contact, motion)
                 if motion.rate_potential > 0.0:
                     longest = APPROACH * motion.potential / motion.rate_potential

@@ -157,6 +157,25 @@ def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, fl
 
 
 @compiled
+def _potential_terms(slip: FloatArray, contact: Contact) -> tuple[float, FloatArray, FloatArray]:
+    """Return P, its gradient, and P times its second derivatives; at rest those in the direction of x."""
+    size = math.sqrt(slip[0] ** 2 + slip[1] ** 2 + (contact[0] * slip[2]) ** 2)
+    along = (
+        slip / size if size > 0.0 else np.array([1.0, 0.0, 0.0])
+    )  # both results depend on the direction only
+    gradient, curvature, potential = np.zeros(3), np.zeros((3, 3)), 0.0
+    friction = _unit_friction(along, contact)
+    by_slip = derivatives_by_slip(along[0], along[1], along[2], 0.0, contact)[2]
+    for i in range(3):
+        gradient[i] = -friction[i]
+        potential += gradient[i] * along[i]
+    for i in range(3):
+        for j in range(3):
+            curvature[i, j] = -potential * by_slip[i, j]
+    return potential * size, gradient, curvature
+
+
+@compiled
 def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> FloatArray:
     """Return the slip w in the span of two ``columns`` with the greatest load·w/P(w).
 
@@ -188,3 +207,4 @@ def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> F
 
 slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
 unit_friction, resisted_slip = KeptOnDisk(_unit_friction), KeptOnDisk(_resisted_slip)
+potential_terms = KeptOnDisk(_potential_terms)

@@ -13,16 +13,17 @@ from numpy.typing import NDArray
 from exudyn_models.forces.axial_pairs import FREE, AxialStick, Mode, spanned
 from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
-from exudyn_models.solver.stick.slip_motion import SlipMotion
+from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
+from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from reference_model.systems import FloatArray
 
 STILL = 1e-8
 """Largest slip in m/s or rad/s of a contact at rest whose slip joints and prescribed motions determine."""
 
 AHEAD = 1e-3
-"""Time in s that shows whether a prescribed motion starts to move a contact at rest."""
+"""Time in s that shows whether a prescribed motion moves a contact."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +60,13 @@ class StickingContact:
     places: NDArray[Any]
     """Positions of its coordinates among the model's."""
 
-    rest_share: ClassVar[float] = 1e-9
-    """Share of a step within which a contact that counts as resting stops."""
+    resolution: ClassVar[float] = 1e-9
+    """Share of a step within which a contact that counts as resting stops, and relative error of slips."""
+
+    @property
+    def directions(self) -> int:
+        """Number of directions of slip that locks hold."""
+        return 1
 
     @property
     def mode(self) -> Mode:
@@ -68,10 +74,11 @@ class StickingContact:
         assert self.stick.mode is not None
         return self.stick.mode
 
-    def enter(self, mbs: Any, mode: Mode, lock: bool = True) -> None:
-        """Switch to a mode; without a ``lock``, others hold the contact at rest."""
+    def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
+        """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
         self.stick.mode = mode
-        mbs.SetObjectParameter(self.stick.locks[0], "activeConnector", lock and mode == Mode.LOCKED)
+        for i, lock in enumerate(self.stick.locks):
+            mbs.SetObjectParameter(lock, "activeConnector", i in locks)
         if (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
@@ -89,10 +96,22 @@ class StickingContact:
         mbs.SetObjectParameter(self.item, "forceUserFunction", self.stick.force)
         mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.stick.jacobian)
 
-    def enter_first(self, mbs: Any, t: float) -> None:
-        """Switch to the mode that load and initial slip suggest."""
-        slip = self.slip(mbs, exu.ConfigurationType.Initial)
-        self.enter(mbs, Mode.OPEN if self.holding(t) == 0.0 else Mode(int(np.sign(slip))))
+    def sliding_mode(self, slip: FloatArray) -> Mode:
+        """Return the mode of a contact with a slip along its locks."""
+        return Mode(int(np.sign(slip[0])))
+
+    @property
+    def law(self) -> Law | None:
+        """Support function of friction, or None on an axis."""
+        return None
+
+    def shares(self, forces: FloatArray, limits: FloatArray) -> tuple[Sequence[float], Sequence[FloatArray]]:
+        """Return shares of the ``limits`` of forces along the locks, and their slopes; the largest share counts."""
+        return [forces[0] / limits[1], -forces[0] / limits[0]], [1.0 / limits[1:], -1.0 / limits[:1]]
+
+    def effective(self) -> FloatArray:
+        """Return the projection of forces along the locks on those that joints cannot take over, shape (k, k)."""
+        return np.eye(1)
 
     def holding(self, t: float) -> float:
         """Return the static friction, a moment in N m."""
@@ -110,19 +129,16 @@ class StickingContact:
 
     def rows(self, mbs: Any) -> FloatArray:
         """Return the gradients of the locked slips for all velocities of the model."""
-        return self._widened(mbs, self.stick.rows)
+        return self.widened(mbs, self.stick.rows)
 
-    def _widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    def widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Return gradients for all velocities of the model from those for the contact's nodes."""
         data = mbs.systemData
         coordinates = data.GetODE2Coordinates(exu.ConfigurationType.Initial)[self.places]
         gradients = gradients_at(self.stick.reference + coordinates)
         rows = np.zeros((len(gradients), data.ODE2Size()))
         rows[:, self.places] = gradients
         return rows
-
-    def active_locks(self) -> Sequence[int]:
-        """Return the object numbers of the active constraints."""
-        return self.stick.locks[:1]
 
     def bias(self, mbs: Any) -> FloatArray:
         """Return the rates of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
@@ -156,7 +172,7 @@ class StickingContact:
 class PlanarContact(StickingContact):
     """Contact between bodies that may slide sideways."""
 
-    rest_share: ClassVar[float] = 1e-6
+    resolution: ClassVar[float] = RESOLVED
 
     @property
     def planar(self) -> PlanarStick:
@@ -164,69 +180,65 @@ class PlanarContact(StickingContact):
         return cast(PlanarStick, self.stick)
 
     @property
+    def directions(self) -> int:
+        """Number of directions of slip that locks hold."""
+        return self.planar.most_locks
+
+    @property
     def free_to_slide(self) -> bool:
         """True if the contact slides and nothing else determines its slip."""
-        return self.stick.slides and not self.planar.held
+        return self.stick.slides and self.planar.allowed.shape[1] > 0
 
-    def allow(self, mbs: Any, by_joints: FloatArray, velocities: FloatArray) -> None:
-        """Let the contact lock the slips of ``velocities``, shape (n, m); joints allow those ``by_joints``."""
-        slips = self.slip_rows(mbs)
-        self.planar.allowed = self.planar.span(slips @ by_joints)
-        self.planar.set_basis(self.planar.span(slips @ velocities))
+    def passes(self, motion: SlipMotion) -> bool:
+        """Return whether joints, locks and prescribed motions accelerate a slip, so it may only pass through zero."""
+        free = self.planar.allowed
+        imposed = motion.rate - free @ np.linalg.lstsq(free, motion.rate, rcond=None)[0]
+        return AHEAD * self.planar.potential_of(imposed) > STILL
 
-    def slip_rows(self, mbs: Any) -> FloatArray:
-        """Return the map from all velocities of the model to the slip, shape (3, n)."""
-        return self._widened(mbs, self.planar.slip_map)
+    @property
+    def law(self) -> Law | None:
+        """Support function of friction."""
+        return self.planar.potential_along_locks
+
+    def allow(self, compliance: FloatArray, lengths: FloatArray) -> None:
+        """Store the slips that joints allow.
+
+        ``compliance``, shape (k, k), relates accelerations to forces along the locks, also without joints, which
+        gives the ``lengths`` of its diagonal, shape (k,).
+        """
+        sizes, axes = np.linalg.eigh(compliance)
+        free = axes[:, sizes > DEPENDENT * lengths.max()] / self.planar.scales[:, None]
+        self.planar.allowed = np.vstack([free, np.zeros((3 - len(free), free.shape[1]))])
 
     def scaled(self, gradient: FloatArray) -> FloatArray:
         """Return a dimensionless gradient of P."""
         return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
 
-    def enter(self, mbs: Any, mode: Mode, lock: bool = True) -> None:
-        """Switch to a mode."""
-        self.stick.mode = mode
-        active = self.active_locks() if lock and mode == Mode.LOCKED else ()
-        for own in self.stick.locks:
-            mbs.SetObjectParameter(own, "activeConnector", own in active)
-
-    def enter_first(self, mbs: Any, t: float) -> None:
-        """Switch to the mode that load and initial slip suggest."""
-        self.enter(mbs, self._free_mode(mbs, t, exu.ConfigurationType.Initial))
-
-    def following(self, mbs: Any, t: float) -> Mode:
-        """Return the next mode at the end of the present one, if no other contact changes."""
-        if self.planar.rests and self.holding(t) > 0.0:
-            return self.driven(mbs)
-        return self._free_mode(mbs, t, CURRENT)
-
     def holding(self, t: float) -> float:
         """Return the static friction in N."""
         return self.planar.without_rounding(self.planar.holding_force(t))
 
-    def driven(self, mbs: Any) -> Mode:
-        """Return the mode into which the load or a prescribed motion drives a contact, and store the direction."""
-        slip, moved = self.carried(mbs)
-        _, share = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
-        self.planar.direction = slip / moved if moved > STILL else share
-        return self._sliding_mode(self.planar.direction)
+    def effective(self) -> FloatArray:
+        """Return the projection of forces along the locks on those that joints cannot take over, shape (k, k)."""
+        axes = self.planar.allowed[: self.planar.most_locks] * self.planar.scales[:, None]
+        return np.asarray(axes @ axes.T)
 
-    def carried(self, mbs: Any, ahead: float = AHEAD) -> tuple[FloatArray, float]:
-        """Return the slip that joints impose on a contact at rest after a time ``ahead`` (s), and its potential."""
-        if not self.planar.rests or self.planar.allowed.shape[1] == self.planar.most_locks:
-            return np.zeros(3), 0.0
-        motion = self.motion(mbs)
-        slip = motion.slip + ahead * motion.rate
-        return slip, self.planar.potential_of(slip)
+    def capacities(self, t: float) -> tuple[float, float]:
+        """Return the static friction in N twice, > 0."""
+        return (max(self.holding(t), np.finfo(float).tiny),) * 2
+
+    def shares(self, forces: FloatArray, limits: FloatArray) -> tuple[Sequence[float], Sequence[FloatArray]]:
+        """Return the share of the ``limits`` of forces along the locks, and its slope."""
+        wrench, count = np.zeros(3), len(forces)
+        wrench[:count] = self.planar.scales * forces
+        share, slip = self.planar.load_share(wrench, limits[0])
+        return [share], [-slip[:count] * self.planar.scales / limits[0]]
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion, and store its radius for the capacity in stick."""
         motion = self.planar.motion(*self._state(mbs, configuration))
         self.planar.radius = motion.radius
         return motion
-
-    def active_locks(self) -> Sequence[int]:
-        """Return the object numbers of the active constraints."""
-        return self.stick.locks[: self.planar.basis.shape[1]]
 
     def start_step(self, mbs: Any) -> None:
         """Prepare the friction for the next step."""
@@ -236,50 +248,41 @@ class PlanarContact(StickingContact):
     def slid(self, mbs: Any) -> SlipMotion:
         """Return the present motion, and store its direction as the mode."""
         motion = self.motion(mbs)
-        self.stick.mode = self._sliding_mode(motion.slip)
+        self.stick.mode = self.sliding_mode(motion.slip)
         return motion
 
     def margin(self, mbs: Any, t: float) -> float:
-        """Return the unused share of the capacity, or ±1 if open; ``sliding_steps`` finds the end of sliding."""
-        holding = self.holding(t)
-        if self.opens_or_closes(holding):
+        """Return ±1, or a number that falls below zero when the slip of a held contact begins or vanishes.
+
+        ``sliding_steps`` finds the end of sliding.
+        """
+        if self.opens_or_closes(self.holding(t)):
             return -1.0
-        if self.stick.slides and self.planar.held and not self.stick.idle:  # a prescribed motion may end
-            return self.slid(mbs).potential / STILL - 0.5
-        return 1.0 - max(self.overload(mbs, t), self.carried(mbs, 0.0)[1] / STILL)
+        if self.stick.slides:
+            return 1.0 if self.free_to_slide else self.slid(mbs).potential / STILL - 0.5
+        if self.mode == Mode.OPEN or self.planar.allowed.shape[1] == self.planar.most_locks:
+            return 1.0
+        return 1.0 - self.motion(mbs).potential / STILL
 
-    def overload(self, mbs: Any, t: float) -> float:
-        """Return the share of the capacity that a contact at rest holds, else 0."""
-        return self.planar.capacity_share(mbs, t) if self.planar.rests else 0.0
-
-    def hold(self, mbs: Any, held: bool) -> None:
-        """Note whether joints or other contacts hold a sliding contact, and whether it rests."""
-        self.planar.held = self.stick.idle = held
-        self.stick.idle = held and self.carried(mbs)[1] <= STILL
-
-    def reverses(self, mbs: Any, time: float) -> bool:
-        """Return whether a sliding contact stops within a ``time`` (s)."""
-        return self.free_to_slide and self.motion(mbs).rests_within(time)
-
-    def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
-        motion = self.motion(mbs, configuration)
-        if self.holding(t) == 0.0:
-            return Mode.OPEN
-        return self._sliding_mode(motion.slip) if motion.is_resolved else Mode.LOCKED
-
-    def _sliding_mode(self, slip: FloatArray) -> Mode:
-        sideways, rim = math.hypot(slip[0], slip[1]), slip[2] * (self.planar.mean_radius or 1.0)
+    def sliding_mode(self, slip: FloatArray) -> Mode:
+        """Return the mode of a contact with a slip."""
+        sideways = math.hypot(slip[0], slip[1])
+        rim = slip[2] * (self.planar.mean_radius or 1.0) if len(slip) == 3 else 0.0
         return Mode.BACKWARD if rim < -NEGLIGIBLE * sideways else Mode.FORWARD  # spin may be a rounding error
 
 
-def sticking_contacts(mbs: Any, t: float) -> list[StickingContact]:
-    """Return the contacts of a model that stick exactly, on one axis or in the plane at its initial values."""
+def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
+    """Return the contacts of a model that stick exactly, on one axis or in the plane, in a run between two times (s).
+
+    Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
+    """
     contacts = [
         StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, contact in contacts_of(mbs).items()
         if contact.stick is not None
     ]
-    _locate(mbs, t, contacts)
+    # Powers keep periodic motions from vanishing at all of these times.
+    _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)
     return [
         (StickingContact if part.on_axis else PlanarContact)(contact.item, part, contact.places)
         for contact in contacts
@@ -287,8 +290,8 @@ def sticking_contacts(mbs: Any, t: float) -> list[StickingContact]:
     ]
 
 
-def _locate(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
-    """Find the parts of contacts that joints hold on one axis."""
+def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) -> None:
+    """Find the parts of contacts that joints hold on one axis at all ``times`` (s)."""
     parts = [
         PlanarContact(contact.item, part, contact.places)
         for contact in contacts
@@ -297,25 +300,28 @@ def _locate(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
     ]
     if not parts:
         return
-    dynamics = Dynamics(mbs, t, 1.0)
-    dynamics.evaluate(t)
-    joints = joints_of(mbs, dynamics, contacts)
+    dynamics = Dynamics(mbs, times[0], 1.0)
+    dynamics.evaluate(times[0])
+    joints, speeds = dynamics.gradients, dynamics.prescribed_speeds(times)
     for part in parts:
-        across = part.slip_rows(mbs)[:2]
+        across = part.widened(mbs, part.planar.slip_map)[:2]
         across[np.abs(across) < NEGLIGIBLE] = 0.0
         part.planar.on_axis = part.planar.mean_radius > 0.0 and spanned(across, joints)
-        part.planar.set_basis(SPIN)
+        if part.planar.on_axis and speeds.any():
+            shares = np.linalg.lstsq(joints.T, across.T, rcond=None)[0]
+            part.planar.on_axis = bool(
+                (np.abs(speeds @ shares) <= NEGLIGIBLE * np.abs(speeds) @ np.abs(shares)).all()
+            )
 
 
 @contextmanager
-def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[None]:
-    """Give contacts the modes of load and slip at the start of a run."""
+def running(mbs: Any, contacts: Sequence[StickingContact]) -> Iterator[None]:
+    """Let contacts stick and slide in a run, at first without friction."""
     try:
         for contact in contacts:
             contact.stick.running, contact.stick.largest = True, 0.0
             contact.omit_user_functions(mbs)
-        for contact in contacts:
-            contact.enter_first(mbs, t)
+            contact.enter(mbs, Mode.OPEN)
         yield
     finally:
         for contact in contacts:
@@ -323,10 +329,3 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
             contact.restore_user_functions(mbs)
             for lock in contact.stick.locks:  # it must not hold after the contact is deleted
                 mbs.SetObjectParameter(lock, "activeConnector", False)
-
-
-def joints_of(mbs: Any, dynamics: Dynamics, contacts: Sequence[StickingContact]) -> FloatArray:
-    """Return the gradients of all constraints except the locks of ``contacts``, shape (m, n), as last evaluated."""
-    locks = [lock for contact in contacts for lock in contact.stick.locks]
-    places = [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]
-    return np.delete(dynamics.gradients, places, axis=0)

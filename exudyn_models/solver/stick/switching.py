@@ -18,6 +18,7 @@ from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.stick.mode_choice import MOST_CHANGES, ModeChoice
 from exudyn_models.solver.stick.sliding_steps import ON_GRID, SlidingSteps
+from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.sticking_contacts import ModeChange, PlanarContact, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -95,7 +96,7 @@ class _Run:
             user_function(mbs, "PostStep", self._after_step),
         ):
             self._choose_accuracy()
-            self._modes.begin()
+            self._modes.begin(self._reached)
             self._modes.settle(self._reached)
             self._note(before)
             while self._reached < self._end - ON_GRID * self._step and not self._stopped:
@@ -273,19 +274,23 @@ class _Run:
             self._step_to(t)
         now = np.array(self._modes.margins(self._reached))
         ends = (now < 0.0) | (roots - t <= least)
-        self._modes.end(self._reached, [self._contacts[i] for i in np.flatnonzero(ends)])
+        self._modes.end([self._contacts[i] for i in np.flatnonzero(ends)])
 
     def _stop(self) -> None:
-        """Step under constant friction until contacts in the plane rest, and lock them.
+        """Step under constant friction until contacts in the plane rest.
 
-        A slip that a prescribed motion reverses passes through zero, and is resolved again after the step.
+        A slip that a prescribed motion reverses passes through zero, until it has a direction again.
         """
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
         stopping = [(contact, motion) for contact, motion in motions if self._slides.stops(contact, motion)]
-        self._modes.survey(self._reached)
-        passing = {contact: motion for contact, motion in stopping if self._modes.passes(contact, motion)}
         time = min(motion.remaining for _, motion in stopping)
-        time += max(map(self._slides.beyond, passing.values()), default=0.0)
+        self._modes.survey(self._reached)
+        passing = [motion for contact, motion in stopping if contact.passes(motion)]
+        shortest = PlanarContact.resolution * self._step
+        time += max(
+            (max(shortest, 2.0 * RESOLVED * one.largest_term / one.rate_potential) for one in passing),
+            default=0.0,
+        )
         if self._reached + time > self._reached:
             for contact, _ in stopping:
                 contact.planar.frozen = True
@@ -294,10 +299,7 @@ class _Run:
             finally:
                 for contact, _ in stopping:
                     contact.planar.frozen = False
-        self._modes.survey(self._reached)
-        for contact, _ in stopping:
-            if contact not in passing:
-                self._modes.enter(self._reached, contact, Mode.LOCKED)
+        self._modes.end(contact for contact, _ in stopping)
 
     def _step_to(self, t: float) -> None:
         self._part(t, 1, lambda time: True, write=False, keep=True)

@@ -21,7 +21,8 @@ from free_bodies import (
 )
 
 from exudyn_models import add_ring_friction, solve_dynamic
-from exudyn_models.solver.stick.complementarity import SharedLoad, bounded_forces, rest_or_slip
+from exudyn_models.solver.stick.complementarity import Sets, SharedLoad, bounded_forces, rest_or_slip
+from reference_model.trajectory import SimulationError
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = pytest.mark.parametrize("solver", [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha])
@@ -58,8 +59,11 @@ def test_forces_between_limits_are_those_of_the_least_sum_over_all_modes():
 
 def test_of_two_contacts_the_weaker_one_slips_and_then_has_sliding_friction():
     chain = np.array([[2.0, -1.0], [-1.0, 1.0]])
-    found = rest_or_slip(chain, np.array([0.0, 3.0]), np.zeros(2), np.full((2, 2), 2.0), np.full((2, 2), 1.0))
-    assert found.tolist() == [0.0, 1.0]
+    sets = Sets([slice(0, 1), slice(1, 2)], [None, None])
+    found = rest_or_slip(
+        chain, np.array([0.0, 3.0]), np.zeros(2), sets, np.full((2, 2), 2.0), np.full((2, 2), 1.0)
+    )
+    assert np.sign(found).tolist() == [0.0, 1.0]
 
 
 @pytest.mark.parametrize("loads", [(0.0, 0.0), (5.0, -3.0), (-2.0, 6.0)])
@@ -137,6 +141,32 @@ def test_a_block_on_a_path_that_reverses_passes_through_zero_slip(solver, radius
     )
 
 
+def test_a_disc_that_slides_on_a_prescribed_path_loses_its_spin_slowly():
+    """At a slip u much faster than its rim, a ring of radius R has the moment μN·R²·S/(2u)."""
+    mbs = new_model()
+    disc = planar_body(mbs, 1.0, 0.05, [0.0] * 3, [0.5, 0.0, 0.1])
+    prescribe(mbs, disc, lambda t: 0.5 * t, lambda t: 0.5)
+    mbs.AddObject(items.CoordinateConstraint(markerNumbers=[coordinate(mbs, None), coordinate(mbs, disc, 1)]))
+    clutch(mbs, None, disc, 4.0, contact_radius=0.2)
+    assert changes_of(mbs, 0.2, 1e-3) == []
+    spin = mbs.GetNodeOutput(disc, exu.OutputVariableType.Coordinates_t)[2]
+    assert spin == pytest.approx(0.1 * math.exp(-4.0 * 0.2**2 * 0.2 / (2.0 * 0.5 * 0.05)), rel=1e-3)
+
+
+@IMPLICIT
+def test_a_prescribed_speed_that_jumps_at_a_break_lets_a_locked_clutch_slip(solver):
+    def run(**breaks):
+        mbs = new_model()
+        shaft, wheel = rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0)
+        prescribe(mbs, shaft, lambda t: 2.0 * max(0.0, t - 0.1), lambda t: 2.0 if t > 0.1 else 0.0)
+        clutch(mbs, shaft, wheel, 5.0)
+        return changes_of(mbs, 0.6, 1e-2, solver, **breaks)
+
+    assert [time for time, *_ in run(breaks=(0.1,))] == pytest.approx([0.1, 0.1 + 2.0 / 5.0], abs=1e-9)
+    with pytest.raises(SimulationError, match="a speed that a constraint prescribes jumps there"):
+        run()
+
+
 @IMPLICIT
 def test_a_locked_rotor_follows_a_prescribed_shaft_with_a_constant_moment(solver):
     mbs = new_model()
@@ -148,10 +178,11 @@ def test_a_locked_rotor_follows_a_prescribed_shaft_with_a_constant_moment(solver
     assert rate_of(mbs, wheel) == pytest.approx(0.6, abs=1e-9)
 
 
-@pytest.mark.parametrize("speed", [0.0, 8.0])
-def test_a_brake_in_a_joint_that_turns_releases_at_its_static_moment(speed):
+@pytest.mark.parametrize("speed", [0.0, 2.0, 8.0])
+@pytest.mark.parametrize("node", ["RotationRotationVector", "RotationEulerParameters"])
+def test_a_brake_in_a_joint_that_turns_releases_once_at_its_static_moment(speed, node):
     """The axis of the wheel is tilted by 40° from the axis of the turret, which turns freely."""
-    mbs, node = new_model(), exu.NodeType.RotationRotationVector
+    mbs, node = new_model(), getattr(exu.NodeType, node)
     turned = exu.rigidBodyUtilities.RotationMatrixX(math.radians(40.0))
     turret = ball(mbs, node, 5.0, 50.0, np.zeros(3), np.zeros(3), [0.0, 0.0, speed])
     wheel = ball(mbs, node, 1.0, 0.5, np.zeros(3), np.zeros(3), [0.0, 0.0, speed], turned)

@@ -83,8 +83,8 @@ def test_random_trains_without_static_friction_change_their_modes_at_the_exact_t
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_random_trains_with_static_friction_change_their_modes_at_the_exact_times(solver):
-    """Some have parallel contacts, or a contact that holds only because another one slips."""
-    assert sum(check(random_train(seed, static=True), solver) for seed in (0, 1, 4, 33, 37, 43)) > 40
+    """Some have parallel contacts, or contacts that hold only because another one slips."""
+    assert sum(check(random_train(seed, static=True), solver) for seed in (0, 1, 4, 33, 37, 43, 1028)) > 46
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)

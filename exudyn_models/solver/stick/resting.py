@@ -1,0 +1,173 @@
+"""Contacts at rest: their constraints, and how they share their loads."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from scipy.sparse.csgraph import connected_components
+
+from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.stick.complementarity import SharedLoad, independent_rows
+from exudyn_models.solver.stick.slips import Slips
+from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
+from reference_model.systems import FloatArray
+
+UNDETERMINED = 1e-9
+"""Smallest relative effect of forces on shares of capacities."""
+
+
+@dataclass(eq=False)
+class Group:
+    """Contacts at rest that share a load.
+
+    The first of their rows are constraints with forces at ``places``; ``blocks`` are the rows of each contact, and
+    ``by_chosen`` relates the slips of the other rows to those of the first.
+    """
+
+    mbs: Any
+    contacts: list[StickingContact]
+    blocks: list[NDArray[Any]]
+    places: NDArray[Any]
+    by_chosen: FloatArray
+    _others: FloatArray = field(default_factory=lambda: np.empty(0))
+    _linear: SharedLoad | None = None
+
+    def __post_init__(self) -> None:
+        if not any(isinstance(contact, PlanarContact) for contact in self.contacts):
+            self._linear = SharedLoad(self.by_chosen)
+            return
+        to_forces = np.vstack((-self.by_chosen.T, np.eye(len(self.by_chosen))))
+        effects = np.zeros((len(to_forces), len(to_forces)))
+        for contact, rows in zip(self.contacts, self.blocks, strict=True):
+            effects[np.ix_(rows, rows)] = contact.effective()
+        _, sizes, axes = np.linalg.svd(effects @ to_forces, full_matrices=False)
+        self._undetermined = to_forces @ axes[sizes > UNDETERMINED].T
+        self._others = np.zeros(self._undetermined.shape[1])
+
+    def forces(self, t: float, enough: float = 0.0) -> tuple[FloatArray, float]:
+        """Return the forces along all rows at the time t (s), and the largest share of a capacity.
+
+        This share is as small as possible, or below ``enough``.
+        """
+        held = -self.mbs.systemData.GetAECoordinates()[self.places]
+        limits = np.array([contact.capacities(t) for contact in self.contacts])
+        if self._linear is not None:
+            return self._linear.distribution(held, limits[np.argsort(np.concatenate(self.blocks))])
+        start = np.concatenate((held, np.zeros(len(self.by_chosen))))
+
+        def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+            forces = start + self._undetermined @ x
+            values, slopes = list[float](), list[FloatArray]()
+            for contact, rows, limit in zip(self.contacts, self.blocks, limits, strict=True):
+                found, by_force = contact.shares(forces[rows], limit)
+                values += found
+                slopes += [slope @ self._undetermined[rows] for slope in by_force]
+            return np.array(values), np.array(slopes)
+
+        share = shares(self._others)[0].max()
+        if share >= enough and len(self._others):
+            self._others = least_maximum(shares, self._others)
+            share = shares(self._others)[0].max()
+        return start + self._undetermined @ self._others, float(share)
+
+    def forces_of(self, i: int) -> FloatArray:
+        """Return the present forces of a contact along its locks."""
+        forces, _ = self.forces(self.mbs.systemData.GetTime(CURRENT))
+        return np.asarray(forces[self.blocks[i]])
+
+
+class Resting:
+    """Contacts at rest of a model, in groups that share loads; ``rows`` are held by constraints."""
+
+    def __init__(self, mbs: Any) -> None:
+        self._data, self._mbs = mbs.systemData, mbs
+        self.rows: list[int] = []
+        self.places = np.empty(0, dtype=int)
+        self.alone, self.alone_places = list[int](), np.empty(0, dtype=int)
+        self.groups: list[Group] = []
+
+    def divide(
+        self,
+        contacts: Sequence[StickingContact],
+        slips: Slips,
+        resting: Sequence[int],
+        places: NDArray[Any],
+        before: Sequence[int],
+    ) -> None:
+        """Choose the rows of the contacts ``resting`` that become constraints, and find those that share loads.
+
+        ``places`` are those of the forces of all constraints, and rows ``before`` are preferred.
+        """
+        own_rows = [range(len(slips.rows))[slips.sets.blocks[i]] for i in resting]
+        rows = [row for own in own_rows for row in own]
+        owner = np.repeat(np.arange(len(resting)), [len(own) for own in own_rows]).astype(int)
+        chosen, by_chosen = independent_rows(
+            slips.to_rates[np.ix_(rows, rows)], [i for i, row in enumerate(rows) if row in before]
+        )
+        others = [i for i in range(len(rows)) if i not in chosen]
+        self.rows, self.groups, self.alone = [rows[i] for i in chosen], [], []
+        self.places = places[self.rows]
+        links = np.zeros((len(resting), len(resting)))
+        for i, shares in zip(others, by_chosen, strict=True):
+            links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares)]]] = 1.0
+        count, of_group = len(resting), np.arange(len(resting))
+        if others:
+            count, of_group = connected_components(links, directed=False)
+        of_first, of_rest = of_group[owner[chosen]], of_group[owner[others]]
+        for number in range(count):
+            own, first, rest = (np.flatnonzero(group == number) for group in (of_group, of_first, of_rest))
+            members = [contacts[resting[k]] for k in own.tolist()]
+            if not len(rest) and not isinstance(members[0], PlanarContact):
+                self.alone.append(resting[int(own[0])])
+                continue
+            order = [chosen[k] for k in first] + [others[k] for k in rest]
+            blocks = [np.array([order.index(i) for i in np.flatnonzero(owner == k).tolist()]) for k in own]
+            self.groups.append(
+                Group(self._mbs, members, blocks, self.places[first], by_chosen[np.ix_(rest, first)])
+            )
+            for i, contact in enumerate(members):
+                contact.stick.holds = partial(self.groups[-1].forces_of, i)
+        self.alone_places = places[[slips.sets.blocks[i].start for i in self.alone]]
+        for i, place in zip(self.alone, self.alone_places, strict=True):
+            contacts[i].stick.holds = partial(self._force_at, int(place))
+
+    def _force_at(self, place: int) -> FloatArray:
+        return -np.asarray(self._data.GetAECoordinates()[place : place + 1])
+
+    def share(self, contacts: Sequence[StickingContact]) -> set[StickingContact]:
+        """Return contacts with all others of their groups."""
+        found = set(contacts)
+        for group in self.groups:
+            if found.intersection(group.contacts):
+                found.update(group.contacts)
+        return found
+
+
+def least_maximum(
+    functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], start: FloatArray
+) -> FloatArray:
+    """Return the minimiser, shape (size,), of the maximum of convex functions, from a ``start``.
+
+    ``functions`` returns their values, shape (n,), and derivatives, shape (n, size).
+    """
+
+    def above(z: FloatArray) -> FloatArray:
+        return np.asarray(z[0] - functions(z[1:])[0])
+
+    def slopes(z: FloatArray) -> FloatArray:
+        gradients = functions(z[1:])[1]
+        return np.hstack((np.ones((len(gradients), 1)), -gradients))
+
+    found = minimize(
+        lambda z: z[0],
+        [np.max(functions(start)[0]), *start],
+        jac=lambda z: np.eye(len(start) + 1)[0],
+        constraints={"type": "ineq", "fun": above, "jac": slopes},
+        method="SLSQP",
+        options={"ftol": 1e-13, "maxiter": 200},
+    )
+    return np.asarray(found.x[1:])
