@@ -1,10 +1,11 @@
 """The paper's systems: frozen, validated parameters in SI units."""
 
+import inspect
 import math
 import re
 import reprlib
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from numbers import Integral
 from typing import Any, ClassVar, TypeAlias
@@ -296,10 +297,31 @@ def require_whole(name: str, value: int, *, least: int, most: int = MOST_COUNT) 
         raise ValueError(f"{name} = {shown(value)}: it must be a whole number >= {least} and <= {most}")
 
 
-def require_callable(name: str, value: Any) -> None:
-    """Raise ``ValueError`` unless ``value`` can be called."""
-    if not callable(value):
-        raise ValueError(f"{name} = {shown(value)}: it must be a function")
+def require_callable(name: str, value: Any, *arguments: str) -> None:
+    """Raise ``ValueError`` unless ``value`` is a function, which takes these positional ``arguments`` if given."""
+    fits = callable(value)
+    try:
+        fits = fits and (not arguments or bool(inspect.signature(value).bind(*arguments)))
+    except TypeError:
+        fits = False
+    except ValueError:  # some functions in C have no signature
+        pass
+    if not fits:
+        of = f" of {', '.join(arguments)}" if arguments else ""
+        raise ValueError(f"{name} = {shown(value)}: it must be a function{of}")
+
+
+def require_choice(name: str, value: Any, allowed: Collection[str]) -> None:
+    """Raise ``ValueError`` unless ``value`` is one of the texts ``allowed``."""
+    if not isinstance(value, str) or value not in allowed:
+        raise ValueError(f"{name} = {shown(value)}: it must be one of {', '.join(allowed)}")
+
+
+def require_kind(name: str, value: Any, *kinds: type) -> None:
+    """Raise ``ValueError`` unless ``value`` is an instance of one of ``kinds``."""
+    if not isinstance(value, kinds):
+        names = " or a ".join(kind.__name__ for kind in kinds)
+        raise ValueError(f"{name} = {shown(value)}: it must be a {names}")
 
 
 Place: TypeAlias = tuple[float, float, float]
@@ -317,7 +339,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
     try:
         given = [tuple(place) for place in places]
     except TypeError:
-        raise ValueError(f"{name} = {places!r}: it must be a list of (x, y, share)") from None
+        raise ValueError(f"{name} = {shown(places)}: it must be a list of (x, y, share)") from None
     result: list[Place] = []
     for i, place in enumerate(given):
         if len(place) != 3:
@@ -339,10 +361,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
 
 def require_system(system: System, *allowed: type[System]) -> None:
     """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default either class."""
-    allowed = allowed or (PinOnDisc, DiscOnDisc)
-    if not isinstance(system, allowed):
-        names = " or a ".join(kind.__name__ for kind in allowed)
-        raise ValueError(f"system = {system!r}: it must be a {names}")
+    require_kind("system", system, *(allowed or (PinOnDisc, DiscOnDisc)))
 
 
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
