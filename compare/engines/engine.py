@@ -13,9 +13,19 @@ from compare.engines.answer import BadTrajectoryError, as_many_as, checked
 from compare.engines.precision import LEAST_PRECISE, USUAL_TOLERANCE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
-from compare.output.outside_text import one_line, one_of
+from compare.output.outside_text import one_line
 from reference_model.support import Support
-from reference_model.systems import FloatArray, PinOnDisc, System, finite_number, require_flag
+from reference_model.systems import (
+    FloatArray,
+    PinOnDisc,
+    System,
+    finite_number,
+    require_callable,
+    require_choice,
+    require_flag,
+    require_kind,
+    require_whole,
+)
 from reference_model.trajectory import Trajectory
 
 KINDS = {
@@ -93,12 +103,19 @@ class Engine:
     seed: int | None = None
 
     def __post_init__(self) -> None:
-        for name in ("name", "version", "about"):
+        for name in ("name", "kin", "version", "about"):
+            require_kind(name, getattr(self, name), str)
             object.__setattr__(self, name, one_line(getattr(self, name)))
+        if not self.name:
+            raise ValueError("name = '': it must not be empty")
+        require_callable("function", self.function)
+        require_kind("kinds", self.kinds, tuple, list)
         object.__setattr__(self, "kinds", tuple(self.kinds))
         for kind in self.kinds:
-            one_of("kind of system", kind, KINDS)
-        for name in ("sticks", "nonlinear", "phases"):
+            require_choice("kinds", kind, KINDS)
+        if self.seed is not None:
+            require_whole("seed", self.seed, least=0)
+        for name in ("sticks", "nonlinear", "phases", "contact_only"):
             require_flag(name, getattr(self, name))
         object.__setattr__(self, "precision", finite_number("precision", self.precision))
         if not 0.0 <= self.precision <= LEAST_PRECISE:

@@ -38,6 +38,7 @@ from exudyn_models.solver.stick.sticking_contacts import (
     sticking_contacts,
 )
 from exudyn_models.solver.stick.switching import run_switching
+from reference_model.systems import require_flag, require_kind
 from reference_model.trajectory import SimulationError, StepCount
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -79,7 +80,11 @@ def solve_dynamic(
         Any other error of Exudyn; an error in a function of a friction contact is its ``__cause__``.
 
     """
+    require_kind("mbs", mbs, exu.MainSystem)
+    require_kind("simulationSettings", simulationSettings, exu.SimulationSettings)
     solver = simulationSettings.timeIntegration.solverType if solverType is None else solverType
+    require_kind("solverType", solver, exu.DynamicSolverType)
+    require_flag("updateInitialValues", updateInitialValues)
     simulationSettings = copy.copy(simulationSettings)  # other runs may share them
     if not mbs.systemIsConsistent:
         mbs.Assemble()
