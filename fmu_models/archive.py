@@ -111,7 +111,7 @@ def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
     require_kind("file", file, Path)
     require_whole("fmi", fmi, least=2, most=3)
     if file.suffix.lower() != ".fmu":
-        raise ValueError(f"file = {str(file)!r}: the name of a unit must end with .fmu")
+        raise ValueError(f"output = {str(file)!r}: the name of a unit must end with .fmu")
     sources = sources_of(model, fmi)
     with tempfile.TemporaryDirectory(prefix="friction-discs-") as name:
         folder = Path(name)

@@ -18,7 +18,7 @@ from reference_model.systems import (
     DiscOnDisc,
     PinOnDisc,
     System,
-    finite_number,
+    real_numbers,
 )
 
 MOST_PLATES = 1000
@@ -95,7 +95,7 @@ class Model:
 
 
 def _checked(variable: Variable, value: float) -> float:
-    number = finite_number(variable.name, value)
+    number = float(real_numbers(variable.name, value))
     what = f"{variable.name} = {number:g} {variable.unit}".rstrip()
     if not variable.least <= number <= variable.most:
         raise ValueError(f"{what}: it must lie between {variable.least:g} and {variable.most:g}")

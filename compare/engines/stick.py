@@ -107,7 +107,7 @@ class _Samples:
     ) -> None:
         self.system, self.ask, self.coarseness = system, ask, coarseness
         self._least = max(LEAST, ABOVE_NOISE * precision) * math.sqrt(coarseness)
-        self._in_a_step = step * slowing_of(system)
+        self._in_a_step = step * _slowing(system)
         self.times = np.empty(0)
         self.states = np.empty((0, system.state_size))
         self.slip = np.empty(0)
@@ -293,7 +293,7 @@ def slip_of(run: Trajectory) -> FloatArray:
     return run.slip_speed
 
 
-def slowing_of(system: System) -> float:
+def _slowing(system: System) -> float:
     """Return the largest deceleration of slip by friction in m/s²."""
     rim = system.contact_radius**2 / system.polar_inertia if isinstance(system, DiscOnDisc) else 0.0
     return system.friction_force * (1.0 / system.mass + rim)

@@ -116,7 +116,7 @@ def add_energy_balance(
         raise ValueError("gains and losses are both empty: an energy balance needs at least one power")
     for name in gains:
         if name in losses:
-            raise ValueError(f"gains and losses: {name!r} names both a gain and a loss; use two names")
+            raise ValueError(f"gains, losses: {name!r} names both a gain and a loss; use two names")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)

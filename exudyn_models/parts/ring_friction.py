@@ -59,7 +59,6 @@ from reference_model.systems import (
     checked_places,
     finite_number,
     positive_number,
-    require_kind,
     require_whole,
     shown,
 )
@@ -153,7 +152,8 @@ def add_ring_friction(
 def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None) -> Coefficient:
     if thermal_node is None:
         return coefficient
-    require_kind("thermal_node", thermal_node, ThermalNode)
+    if not isinstance(thermal_node, ThermalNode):
+        raise ValueError(f"thermal_node = {shown(thermal_node)}: it must be a result of add_thermal_node")
     return thermal_node.with_temperature(coefficient)
 
 

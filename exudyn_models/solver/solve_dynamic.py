@@ -165,7 +165,7 @@ def _solve(
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()
             if contacts:
-                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
+                changes = run_switching(mbs, simulationSettings, contacts, updateInitialValues, modes)
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
@@ -186,7 +186,9 @@ def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) ->
 def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> None:
     """Raise the cause of an error in a run, unless it is Exudyn's own."""
     raise_interrupt(error)
-    if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
+    if isinstance(
+        error.__cause__, (Warning, SimulationError)
+    ):  # of a check, a warning made an error by a filter
         raise error.__cause__ from None
     if isinstance(error, (exu.SolverError, exu.InternalError)):
         if massless := _singular(mbs, time == 0.0):

@@ -9,7 +9,7 @@ from plain_engines import in_units
 from scipy.integrate import odeint
 from scipy.special import ellipe, ellipkm1
 
-from reference_model import DiscOnDisc, PinOnDisc, Points, simulate
+from reference_model import Annulus, DiscOnDisc, PinOnDisc, Points, simulate
 
 CONTACTS = ("pin", "ring", "points")
 SUPPORTS = ("linear", "hardening", "stop", "both")
@@ -135,14 +135,52 @@ def friction_of_ring(disc, epsilon):
     return friction
 
 
+def friction_of_annulus(disc, inner, outer, epsilon):
+    """Return the mean of the law of the ring over an annulus under uniform pressure, by Gauss's rule.
+
+    The rule is split at the radius where a point may rest, and its nodes cluster there.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+
+    def friction(u, w, _):
+        U, spin = abs(u), abs(w)
+        split = min(max(U / spin, inner), outer) if spin > 0.0 else outer
+        radii = np.concatenate([split + (end - split) * nodes**3 for end in (inner, outer)])
+        widths = np.concatenate([abs(end - split) * 3.0 * nodes**2 * weights for end in (inner, outer)])
+        shares = 2.0 * radii * widths / (outer**2 - inner**2)
+        W = radii * spin
+        A, B = U**2 + W**2 + epsilon**2, 2.0 * U * W
+        # P = (2/π)·√(A + B)·E(m), m = 2B/(A + B), with dE/dm = (E − K)/(2m)
+        m = 2.0 * B / (A + B)
+        E, K = ellipe(m), ellipkm1((A - B) / (A + B))
+        small = m < 1e-4
+        slope = np.where(small, -np.pi / 8.0 * (1.0 + 0.375 * m), (E - K) / (2.0 * np.where(small, 1.0, m)))
+        root = np.sqrt(A + B)
+        by_m = 2.0 / np.pi * root * slope
+        along = 2.0 / np.pi * E * (U + W) / root
+        m_by_U = (4.0 * W - 2.0 * m * (U + W)) / (A + B)
+        m_by_W = (4.0 * U - 2.0 * m * (U + W)) / (A + B)
+        force, moment = along + by_m * m_by_U, radii * (along + by_m * m_by_W)
+        load = disc.friction_force * shares
+        return (
+            -complex(load @ force) * (u / U if U > 0.0 else 0.0),
+            -float(load @ moment) * math.copysign(1.0, w),
+        )
+
+    return friction
+
+
 def smooth_motion(system, start, epsilon, contact=None):
-    """Return states by LSODA with friction v/√(v² + ε²), of the system or of points ``contact``.
+    """Return states by LSODA with friction v/√(v² + ε²), of the system, of an annulus or of points ``contact``.
 
     Slip is an unknown to preserve the digits of creep.
     """
     omega, C, beta, m = system.disc_speed, system.stiffness, system.damping, system.mass
     disc = isinstance(system, DiscOnDisc)
-    if disc and system.contact_points is None and contact is None:
+    if isinstance(contact, Annulus):
+        friction = friction_of_annulus(system, contact.inner_radius, contact.outer_radius, epsilon)
+    elif disc and system.contact_points is None and contact is None:
         friction = friction_of_ring(system, epsilon)
     else:
         radius, points = (system.contact_radius, system.contact_points or 1) if disc else (0.0, 1)
