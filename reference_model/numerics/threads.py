@@ -2,13 +2,17 @@
 
 import ctypes
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import Any
 
-LOOKS_EVERY = 0.1
+LOOKS_EVERY = 0.05
 """Time in s between two chances for an exception that another thread has sent."""
+
+AGAIN = 10
+"""Number of looks before an exception is sent again, because callbacks of libraries may lose it."""
 
 
 class Threads(ThreadPoolExecutor):
@@ -41,15 +45,22 @@ class Threads(ThreadPoolExecutor):
             with self._guard:
                 self._at_work.discard(threading.get_ident())
 
+    def _interrupt(self) -> None:
+        with self._guard:  # so a thread ends no work, and begins no other, meanwhile
+            for thread in self._at_work:
+                number, kind = ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(number, kind)
+
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Wait for all threads, after an exception as short as possible."""
         if kind is not None:
             self.shutdown(wait=False, cancel_futures=True)
-            with self._guard:  # so a thread ends no work, and begins no other, meanwhile
-                for thread in self._at_work:
-                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                        ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
-                    )
+            looks = 0
+            while self._at_work:
+                if looks % AGAIN == 0:
+                    self._interrupt()
+                looks += 1
+                time.sleep(LOOKS_EVERY)
         super().__exit__(kind, error, trace)
