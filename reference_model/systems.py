@@ -298,13 +298,13 @@ def require_whole(name: str, value: int, *, least: int, most: int = MOST_COUNT) 
         raise ValueError(f"{name} = {shown(value)}: it must be a whole number >= {least} and <= {most}")
 
 
-def require_callable(name: str, value: Any, *arguments: str) -> None:
-    """Raise ``ValueError`` unless ``value`` is a function, which takes these positional ``arguments`` if given."""
+def require_callable(name: str, value: Any, *arguments: str, named: Collection[str] = ()) -> None:
+    """Raise ``ValueError`` unless ``value`` is a function, which takes these arguments if given."""
     try:
         if arguments or not callable(value):
-            inspect.signature(value).bind(*arguments)
+            inspect.signature(value).bind(*arguments, **dict.fromkeys(named))
     except TypeError:
-        of = f" of {', '.join(arguments)}" if arguments else ""
+        of = f" of {', '.join((*arguments, *named))}" if arguments else ""
         raise ValueError(f"{name} = {shown(value)}: it must be a function{of}") from None
     except ValueError:  # some functions in C have no signature
         pass

@@ -10,7 +10,7 @@ from typing import Any, Literal, Self, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, finite_number, real_numbers
 
 Kind = Literal["formula", "conservation", "order", "trajectory"]
 """Source of the prediction.
@@ -99,11 +99,13 @@ class ErrorBudget:
         negligible: float = math.inf,
         doubt: float = 1.0,
     ) -> None:
-        object.__setattr__(self, "numerical", np.asarray(numerical, dtype=float))
-        object.__setattr__(self, "model", float(model))
-        object.__setattr__(self, "resolution", float(resolution))
+        object.__setattr__(self, "numerical", real_numbers("numerical", numerical))
+        object.__setattr__(self, "model", float(real_numbers("model", model)))
+        object.__setattr__(self, "resolution", float(real_numbers("resolution", resolution)))
         object.__setattr__(self, "negligible", min(float(negligible), self.resolution))
-        object.__setattr__(self, "doubt", float(doubt))
+        object.__setattr__(self, "doubt", finite_number("doubt", doubt))
+        if self.doubt < 1.0:
+            raise ValueError(f"doubt = {self.doubt:g}: it must be >= 1")
         if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
             raise ValueError(
                 f"error budget: numerical and model errors must be >= 0 (model = {self.model:g}), "

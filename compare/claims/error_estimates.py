@@ -16,7 +16,7 @@ from compare.engines import USUAL_TOLERANCE
 from compare.engines.engine import Engine
 from compare.engines.outside.processor_time import processor_time
 from compare.output.outside_text import printable
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, positive_number, require_callable, require_flag
 
 WORKING = USUAL_TOLERANCE
 """Default tolerance of engines in studies."""
@@ -73,6 +73,9 @@ def refined(
     change, because a single number may hardly change by chance. If the engine does not follow the smaller tolerance,
     the next larger one with an effect is used.
     """
+    require_callable("quantity", quantity)
+    tolerance = positive_number("tolerance", tolerance, "")
+    require_flag("alike", alike)
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):
         other = np.asarray(quantity(factor * tolerance), dtype=float)

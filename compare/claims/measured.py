@@ -8,7 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import COARSENING, change_as_error
-from reference_model.systems import FloatArray, System
+from reference_model.systems import (
+    FloatArray,
+    System,
+    real_numbers,
+    require_flag,
+    require_kind,
+    require_system,
+)  # fmt: skip
 
 ONE = 0.5
 """Resolution of a count without open answers."""
@@ -45,6 +52,20 @@ class Measured:
     size: ArrayLike | None = None
     answers: bool = False
     friction: bool = True
+
+    def __post_init__(self) -> None:
+        """Raise ``ValueError`` for a wrong type; NaN is a missing number."""
+        for name in ("predicted", "value", "error", "model"):
+            real_numbers(name, getattr(self, name))
+        for name in ("resolution", "size"):
+            if getattr(self, name) is not None:
+                real_numbers(name, getattr(self, name))
+        for name in ("at", "parameters", "named"):
+            require_kind(name, getattr(self, name), Mapping)
+        for name in ("answers", "friction"):
+            require_flag(name, getattr(self, name))
+        if self.system is not None:
+            require_system(self.system)
 
     @property
     def axes(self) -> tuple[tuple[str, ...], ...]:

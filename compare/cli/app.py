@@ -27,6 +27,7 @@ try:
         Command,
         EngineFailedError,
         InterruptedByUserError,
+        Program,
         close_output,
         printing,
         say,
@@ -120,6 +121,7 @@ def errata() -> None:
 
 app = typer.Typer(
     name="friction-discs",
+    cls=Program,
     add_completion=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,

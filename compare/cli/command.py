@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from compare.output.outside_text import printable
 from compare.run.statuses import BAD_INPUT as BAD_INPUT
@@ -59,10 +59,18 @@ class Command(TyperCommand):
         return re.sub(r" <(str|path|list\[str\])>", "", super().get_help(ctx))
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command; turn Ctrl-C into ``InterruptedByUserError``."""
+        """Run the command."""
+        with HELD:
+            return super().invoke(ctx)
+
+
+class Program(TyperGroup):
+    """All commands."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command; turn Ctrl-C into ``InterruptedByUserError``."""
         try:
-            with HELD:
-                return super().invoke(ctx)
+            return super().invoke(ctx)
         except KeyboardInterrupt:
             raise InterruptedByUserError from None
 

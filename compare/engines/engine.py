@@ -119,6 +119,8 @@ class Engine:
         require_callable("function", self.function)
         require_kind("kinds", self.kinds, tuple, list)
         object.__setattr__(self, "kinds", tuple(self.kinds))
+        if not self.kinds:
+            raise ValueError(f"kinds = (): it must contain at least one of {', '.join(KINDS)}")
         for kind in self.kinds:
             require_kind("kinds", kind, str)
             one_of("kind of system", kind, KINDS)

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from compare.engines import one_of
-from compare.sweep.quantities import parameters, units
-from reference_model.systems import FloatArray, System, number_in_text
+from compare.sweep.quantities import components, parameters, units
+from reference_model.systems import FloatArray, System, checked_state, number_in_text
 
 LEAST_UNIFORM = 2.0**-54
 """Replacement for the random number 0, whose normal quantile is infinite."""
@@ -106,15 +106,19 @@ class Uncertain:
 
     def check(self, system: System) -> None:
         """Raise ``ValueError`` if the distribution includes values that ``system`` does not allow."""
-        if self.name not in parameters(system):
-            return
-        largest = float(np.max(np.abs(self.values(np.array([0.0, 1.0 - LEAST_UNIFORM * 2.0])))))
+        drawn = self.values(np.array([0.0, 0.5, 1.0 - LEAST_UNIFORM * 2.0]))
+        if not np.all(np.isfinite(drawn)):
+            raise ValueError(f"{self}: its values are not finite numbers; use a larger deviation")
+        largest = float(np.max(np.abs(drawn)))
         for end in self.distribution.support():
             # replace an infinite end by the largest value that can be drawn
             value = float(end) if math.isfinite(end) else math.copysign(largest, end)
             changes: dict[str, Any] = {self.name: value}
             try:
-                replace(system, **changes)
+                if self.name in parameters(system):
+                    replace(system, **changes)
+                else:
+                    checked_state(system, [changes.get(name, 0.0) for name in components(system)])
             except ValueError as error:
                 allowed = str(error).rpartition(": ")[2]
                 raise ValueError(

@@ -41,26 +41,24 @@ def build_model(
     """
     initial_state = checked_state(system, initial_state)
     axes_speed = finite_number("axes_speed", axes_speed)
-    require_callable("friction", friction)
+    regularisation = finite_number("regularisation", regularisation)
+    contact: dict[str, Any] = {"contact_radius": 0.0}
+    if isinstance(system, DiscOnDisc):
+        contact = {"contact_radius": system.contact_radius, "contact_points": system.contact_points}
+    contact |= {
+        "friction_coefficient": 1.0,
+        "normal_load": system.friction_force,
+        "regularisation": regularisation,
+    }
+    require_callable("friction", friction, "mbs", "master_node", "disc_node", named=contact)
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     master = add_rotor(mbs, MASTER_INERTIA, system.disc_speed - axes_speed)
     body = _add_supported_body(mbs, system, initial_state, axes_speed)
-    contact: dict[str, Any] = {"contact_radius": 0.0}
-    if isinstance(system, DiscOnDisc):
-        contact = {"contact_radius": system.contact_radius, "contact_points": system.contact_points}
-        if system.shaft_damping > 0.0:
-            _add_shaft(mbs, body, system, axes_speed)
+    if isinstance(system, DiscOnDisc) and system.shaft_damping > 0.0:
+        _add_shaft(mbs, body, system, axes_speed)
     if system.friction_force > 0.0:
-        friction(
-            mbs,
-            master,
-            body,
-            friction_coefficient=1.0,
-            normal_load=system.friction_force,
-            regularisation=regularisation,
-            **contact,
-        )
+        friction(mbs, master, body, **contact)
     variables = exu.OutputVariableType
     position, velocity, acceleration = (
         node_sensor(mbs, body, variable)

@@ -6,18 +6,19 @@ depend on the requested times.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from reference_model.ensemble.core.checkpoints import NONE, ON_THE_WAY, SLIPS, Checkpoints, empty_checkpoints
 from reference_model.ensemble.end_states import HANDED_OVER, Results
-from reference_model.ensemble.task import Task
+from reference_model.ensemble.task import Task, in_threads
 from reference_model.motion.stepper import Kind
 from reference_model.systems import FloatArray
-from reference_model.trajectory import SimulationError, Trajectory
+from reference_model.trajectory import LOOK_BACK, MOST_AHEAD, SimulationError, Trajectory
 
-Runs = Callable[[Task, Checkpoints], Results]
-"""Runs a task, with room for the checkpoints of one of its trajectories."""
+Runs = Callable[..., Results]
+"""Runs a ``Task``, with room for the ``checkpoints`` of one of its trajectories."""
 
 ROOM_TO_SPARE = 64
 """Initial number of checkpoints for the beginnings of phases."""
@@ -26,6 +27,10 @@ ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration or the unit of time, whichever is longer."""
 
 STAGES = 12
+
+BRIEF = 200_000
+"""Number of steps of a run in the thread of the caller, half a second of work; starting a thread costs a fifth of a
+short run."""
 
 
 @dataclass
@@ -57,7 +62,12 @@ class Recording:
         room = len(requested) + ROOM_TO_SPARE
         while True:
             checkpoints = empty_checkpoints(room, len(state), requested)
-            end = one(task, checkpoints)
+            brief = task._replace(most_rounds=np.full(1, BRIEF))
+            end = one(brief, checkpoints)
+            if brief.most_rounds[0] == 0:  # again, in a thread that Ctrl-C can stop
+                self._require_few_steps(self.steps + BRIEF, since + float(end.times[0]))
+                checkpoints = empty_checkpoints(room, len(state), requested)
+                (end,) = in_threads([partial(one, checkpoints=checkpoints)], task, 1)
             taken = int(np.count_nonzero(checkpoints["kind"] != NONE))
             if taken < room:
                 break
@@ -83,6 +93,8 @@ class Recording:
         for phase in motion.phases:
             self._enter(phase.kind, phase.start, phase.initial_state)
         self.steps += motion.solution.steps
+        if self.steps > LOOK_BACK:
+            self._require_few_steps(self.steps, float(motion.times[-1]))
         self.evaluations += motion.solution.evaluations
 
     def _sample(self, parameters: FloatArray, many: Runs, checkpoints: Checkpoints, until: float) -> None:
@@ -96,6 +108,14 @@ class Recording:
         self._require_end(ends, durations, until)
         self.states[requested] = ends.states
         self.evaluations += STAGES * int(np.sum(ends.steps))
+
+    def _require_few_steps(self, steps: int, until: float) -> None:
+        if (self.duration - until) * steps > MOST_AHEAD * until:
+            raise SimulationError(
+                f"stopped {until:g} s after its start because more than {MOST_AHEAD:,} further steps are "
+                "needed: the parameters are very stiff, or the motion is very long; simulate it in parts, or with a "
+                "larger tolerance"
+            )
 
     def _require_end(self, results: Results, durations: FloatArray, since: float) -> None:
         short = results.times < durations - self.rounding

@@ -34,6 +34,8 @@ UNUSED = 86_400.0
 
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 
+config.DISABLE_JIT = 0  # despite the user's setting, because plain Python cannot run the compiled functions
+
 _one_at_a_time = threading.Lock()
 _announced = threading.Lock()
 

@@ -9,13 +9,14 @@ import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from contextlib import AbstractContextManager, suppress
 from typing import Any, NamedTuple, TypeAlias
 from urllib.parse import urlsplit
 
 from compare.output.outside_text import reason_of
 from compare.run.provenance import stamp
+from reference_model.numerics.threads import Threads
 
 WAIT = 3.0  # time limit in s for a scheduler to answer and to have a worker
 IN_FLIGHT = 3  # submitted tasks per thread: enough to keep it busy, and few to lose
@@ -46,17 +47,17 @@ class InProcess:
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
         """Yield keys and results in order; ``tasks`` is consumed on demand."""
         running: deque[tuple[Hashable, Future[Any]]] = deque()
-        with ThreadPoolExecutor(AT_ONCE) as pool:
+        with Threads(AT_ONCE) as pool:
             for task in tasks:
                 if not task.compiled:  # two of them would wait for the interpreter lock
                     yield task.key, task.function(*task.arguments)
                     continue
                 running.append((task.key, pool.submit(task.function, *task.arguments)))
                 if len(running) > AT_ONCE:
-                    key, result = running.popleft()
-                    yield key, result.result()
-            for key, result in running:
-                yield key, result.result()
+                    key, future = running.popleft()
+                    yield key, pool.result(future)
+            for key, future in running:
+                yield key, pool.result(future)
 
 
 class Cluster(AbstractContextManager["Cluster"]):

@@ -83,6 +83,8 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
+    After ``task.most_rounds`` the run ends with incomplete results, and sets this number to 0.
+
     ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), their scalar data; both are zeros.
 
     ``load`` writes the start of a trajectory to a lane's trial. ``advance`` makes a trial step in all lanes,
@@ -92,7 +94,7 @@ def run(
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
-    active = 0
+    active = rounds = 0
     while True:
         # Again in every round, because the lanes exist only while something refers to the array.
         lanes = record[0]
@@ -111,6 +113,13 @@ def run(
                 busy[lane] = True
                 active += 1
                 number += 1
+        rounds += 1
+        if rounds > task.most_rounds[0]:
+            task.most_rounds[0] = 0
+            for lane in range(LANES):
+                if busy[lane]:
+                    store(lanes, memory[lane], lane, results)
+            active = 0
         if active == 0:
             break
         _accept(lanes)

@@ -61,15 +61,19 @@ def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDAr
     return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
 
 
-def _run(task: Task, settings: DiscSettings, threads: int = 1) -> Results:
+def _run(task: Task, settings: DiscSettings, threads: int = 0) -> Results:
     kernel = run_points if settings.around else run_rings
     results = Results.empty(task.size, DiscOnDisc.state_size)
-    in_chunks(lambda first, last: kernel(task, settings, results, first, last), task.size, threads)
+
+    def run(stoppable: Task, first: int, last: int) -> None:
+        kernel(stoppable, settings, results, first, last)
+
+    in_chunks(run, task, threads)
     return results
 
 
 def _run_through(
-    disc: DiscOnDisc, task: Task, settings: DiscSettings, tolerance: float, threads: int = 1
+    disc: DiscOnDisc, task: Task, settings: DiscSettings, tolerance: float, threads: int = 0
 ) -> Results:
     results = _run(task, settings, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)

@@ -17,10 +17,10 @@ def simulate_pins(
     regions = None if varied else trapping_regions(pin)
     results, local = Results.empty(task.size, pin.state_size), tolerance_of_steps(tolerance)
 
-    def run(first: int, last: int) -> None:
-        run_pins(task, settings_of(local, early_end, regions=regions), results, first, last)
+    def run(stoppable: Task, first: int, last: int) -> None:
+        run_pins(stoppable, settings_of(local, early_end, regions=regions), results, first, last)
 
-    in_chunks(run, task.size, threads)
+    in_chunks(run, task, threads)
     return results
 
 

@@ -33,6 +33,7 @@ from reference_model.ensemble.pin.lanes import (
 )
 from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
 from reference_model.systems import PinOnDisc
+from reference_model.trajectory import MOST_AHEAD
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
@@ -75,7 +76,7 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
     lanes.tolerance[lane] = settings.tolerance
     lanes.slow[lane] = 10.0 * friction * math.sqrt(settings.tolerance)
     lanes.steps[lane] = lanes.flag[lane] = 0.0
-    lanes.most_steps[lane] = STEPS_TO_SPARE + STEPS_A_TIME * memory.duration
+    lanes.most_steps[lane] = min(STEPS_TO_SPARE + STEPS_A_TIME * memory.duration, MOST_AHEAD)
 
     expect_ends(memory, law, settings)
     _start_watching(lanes, memory, lane, settings)

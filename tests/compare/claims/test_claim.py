@@ -5,7 +5,9 @@ import pytest
 from fake_studies import claim
 
 from compare.claims.as_json import claim_as_json, claim_from_json
-from compare.claims.claim import DOUBT, Grade, Verdict
+from compare.claims.claim import DOUBT, ErrorBudget, Grade, Verdict
+from compare.claims.error_estimates import refined
+from compare.claims.measured import Measured
 from compare.report.numbers import account, decision, in_short, worst
 
 
@@ -157,3 +159,24 @@ def test_numbers_of_several_units_are_compared_within_each_unit():
 def test_an_invalid_claim_is_rejected(predicted, measured, numerical, more, words):
     with pytest.raises(ValueError, match=words):
         claim("c", "good", predicted, measured, numerical, **more)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: ErrorBudget("1", resolution=1.0), "^numerical = '1': it must be a number"),
+        (lambda: ErrorBudget(0.0, resolution=None), "^resolution = None: it must be a number"),
+        (lambda: ErrorBudget(0.0, resolution=1.0, doubt=0.5), "^doubt = 0.5: it must be >= 1"),
+        (lambda: Measured(predicted=1j, value=1.0), "^predicted = 1j: it must be a number"),
+        (
+            lambda: Measured(predicted=1.0, value=1.0, answers="no"),
+            "^answers = 'no': it must be True or False",
+        ),
+        (lambda: Measured(predicted=1.0, value=1.0, system="pin"), "^system = 'pin': it must be a PinOnDisc"),
+        (lambda: refined(lambda tolerance: tolerance, -1.0), "^tolerance = -1.*: it must be > 0"),
+        (lambda: refined(5), "^quantity = 5: it must be a function"),
+    ],
+)
+def test_wrong_arguments_of_measurements_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

@@ -148,6 +148,8 @@ BAD = [
     (f"{UNCERTAIN} {NORMAL} --start x=1", f"--start x: {VARIED} x; leave one of them out"),
     (f"{UNCERTAIN} --vary 'mass=uniform(1, 2)' --set mass=1", f"--set mass: {VARIED} mass; leave one…"),
     (f"{ALONG} --x x=0:1:5", "unknown parameter 'x'…"),
+    (f"{ALONG} --vary 'x=uniform(0, 1e60)'", "… includes x = 1e+60, but it must not be larger than 1e+50…"),
+    (f"{ALONG} --vary 'x=truncnorm(0, 1e-300, 1, 2)'", "…: its values are not finite numbers…"),
     (f"{ALONG} --vary 'mass=uniform(1, 2)'", "…unknown component 'mass'…"),
     (f"{ALONG} --set disc_speed=2", "--set disc_speed: --x already varies disc_speed; leave one of them out"),
     ("sweep shock --set damping=0.5", "no saddle-type stick-slip orbit at these parameters, so …"),

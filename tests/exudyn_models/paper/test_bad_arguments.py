@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from compare.claims.parameters import FIG5, FIG11
-from exudyn_models import eigenvalues, simulate, simulate_fixed_step, simulate_with_native_contact
+from exudyn_models import (
+    build_model,
+    eigenvalues,
+    simulate,
+    simulate_fixed_step,
+    simulate_with_native_contact,
+)
 
 POINTS = replace(FIG11, contact_points=4)
 STARTS = {FIG5: [1.3, 0.0, 0.0, -1.3], FIG11: [0.05, 0.0, 0.4, 0.0, 0.05, 1.3]}
@@ -52,3 +58,18 @@ def test_arguments_of_a_simulation(engine, system, change, message):
 def test_eigenvalues_of_a_contact_without_a_derivative(system, state, message):
     with pytest.raises(ValueError, match=message):
         eigenvalues(system, state)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"regularisation": None}, "^regularisation = None: it must be a number"),
+        (
+            {"friction": lambda mbs: None},
+            "^friction = .*: it must be a function of mbs, master_node, disc_node, ",
+        ),
+    ],
+)
+def test_a_model_refuses_wrong_arguments(change, message):
+    with pytest.raises(ValueError, match=message):
+        build_model(FIG5, [0.1, 0.0, 0.0, 0.0], **({"regularisation": 1e-3} | change))

@@ -1,5 +1,6 @@
 """Properties of the compiled code itself: reproducible, vectorised, and compiled as rarely as possible."""
 
+import os
 import platform
 import re
 import subprocess
@@ -108,3 +109,14 @@ def test_one_kernel_serves_discs_with_and_without_stick():
 def test_plain_reference_does_not_import_the_compiler():
     code = "import sys, reference_model; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_users_setting_without_compiler_does_not_break_kernels():
+    code = (
+        "from compare.claims.parameters import FIG5\nfrom reference_model import simulate\n"
+        "simulate(FIG5, [0.1, 0, 0, 0], [0, 1], compiled=True)"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=os.environ | {"NUMBA_DISABLE_JIT": "1"}, check=False
+    )
+    assert run.returncode == 0
