@@ -1,0 +1,1 @@
+"""The motion of a sliding and sticking body, written once for interpreted and compiled runs."""
