@@ -17,6 +17,7 @@ SLIPS, STICKS = 1.0, 2.0
     PATIENCE,
     SIDE_OF_STOP,
     SIDE_OF_RIM,
+    SIDE_OF_HOLE,
     PHASE,
     STEPS,
     EVALUATIONS,
@@ -24,11 +25,11 @@ SLIPS, STICKS = 1.0, 2.0
     RECORDED,
     PHASES,
     STATUS,
-) = range(13)
+) = range(14)
 """Indices into the memory of a run, which continues from it in the next call.
 
 It contains the next explicit step, the time of the last one, the number of recent short steps and the number that
-calls for collocation, the signs of two surfaces, the kind of the current phase, the numbers of steps and evaluations,
+calls for collocation, the signs of the surfaces, the kind of the current phase, the numbers of steps and evaluations,
 the work in explicit steps, the numbers of recorded times and phases, and whether the run goes on.
 """
 

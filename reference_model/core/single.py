@@ -175,7 +175,7 @@ def simulate_by(
     state[columns] = frame.unknowns(start)
     scaled = (moments - moments[0]) / unit.time
     local = max(tolerance * LOCAL * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
-    out, memory, phases = np.zeros((len(moments), 6)), np.zeros(13), np.zeros((64, 8))
+    out, memory, phases = np.zeros((len(moments), 6)), np.zeros(14), np.zeros((64, 8))
     memory[PATIENCE], memory[STEP], memory[RECORDED] = FEW, FIRST_STEP, 1.0
     end, count = float(scaled[-1]), StepCount(float(scaled[-1]))
     while memory[STATUS] == RUNS:

@@ -9,7 +9,7 @@ from reference_model.core.memory import (
     FAILS,
     PATIENCE,
     SHORT,
-    SIDE_OF_RIM,
+    SIDE_OF_HOLE,
     SIDE_OF_STOP,
     SPAN,
     STATUS,
@@ -22,7 +22,7 @@ from reference_model.core.memory import (
 from reference_model.core.parts import part
 from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
 from reference_model.core.rest import creep_of
-from reference_model.core.surfaces import crossing, has_rim, has_stop, may_cross
+from reference_model.core.surfaces import crossing, may_cross
 from reference_model.systems import FloatArray
 
 REST_TIME = 1e-12
@@ -100,9 +100,10 @@ def first_event(
     F: FloatArray,
 ) -> tuple[float, int]:
     """Return the share of a step up to the first crossing of a surface or the end of the run, and which it is."""
-    stops = has_stop(law) and may_cross(SIDE_OF_STOP, memory[SIDE_OF_STOP], y, new, law)
-    rests = has_rim(law) and may_cross(SIDE_OF_RIM, memory[SIDE_OF_RIM], y, new, law)
-    if not (stops or rests or new[6] > end):
+    crosses = new[6] > end
+    for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
+        crosses = crosses or may_cross(which, memory[which], y, new, law)
+    if not crosses:
         return 1.0, NOWHERE
     place, event = 1.0, NOWHERE
     last = rates(new[0], new[1], new[2], new[3], new[4], law)
@@ -116,14 +117,11 @@ def first_event(
             place = min(max(place + change, 0.0), 1.0)
             if abs(change) < 1e-15:
                 break
-    if stops:
-        share = crossing(SIDE_OF_STOP, memory[SIDE_OF_STOP], y, F, law)
-        if share < place:
-            place, event = share, SIDE_OF_STOP
-    if rests:
-        share = crossing(SIDE_OF_RIM, memory[SIDE_OF_RIM], y, F, law)
-        if share < place:
-            place, event = share, SIDE_OF_RIM
+    for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
+        if may_cross(which, memory[which], y, new, law):
+            share = crossing(which, memory[which], y, F, law)
+            if share < place:
+                place, event = share, which
     return place, event
 
 

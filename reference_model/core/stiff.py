@@ -13,8 +13,6 @@ from reference_model.core.memory import (
     PATIENCE,
     RECORDED,
     SHORT,
-    SIDE_OF_RIM,
-    SIDE_OF_STOP,
     SPAN,
     STATUS,
     STEP,
@@ -29,7 +27,7 @@ from reference_model.core.parts import part
 from reference_model.core.recording import record_series
 from reference_model.core.rest import begun, direction
 from reference_model.core.slip import creep_from
-from reference_model.core.surfaces import has_rim, has_stop, value_of
+from reference_model.core.surfaces import crossed_any
 from reference_model.numerics.collocation import NODES, POINTS
 from reference_model.systems import FloatArray
 
@@ -71,19 +69,6 @@ def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
     for i in range(NODES):
         guess[i] = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)[:5]
     return guess
-
-
-@part
-def crossed_any(y: Unknowns, memory: FloatArray, law: Law) -> bool:
-    """Return whether a surface was crossed, and remember the new side."""
-    result = False
-    if has_stop(law) and memory[SIDE_OF_STOP] * value_of(SIDE_OF_STOP, y, law) < 0.0:
-        memory[SIDE_OF_STOP] = -memory[SIDE_OF_STOP]
-        result = True
-    if has_rim(law) and memory[SIDE_OF_RIM] * value_of(SIDE_OF_RIM, y, law) < 0.0:
-        memory[SIDE_OF_RIM] = -memory[SIDE_OF_RIM]
-        result = True
-    return result
 
 
 @part

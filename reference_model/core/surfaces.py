@@ -4,7 +4,7 @@ import math
 
 from reference_model.core.explicit import Unknowns, inside
 from reference_model.core.forces import Law
-from reference_model.core.memory import SIDE_OF_RIM, SIDE_OF_STOP
+from reference_model.core.memory import SIDE_OF_HOLE, SIDE_OF_RIM, SIDE_OF_STOP
 from reference_model.core.parts import part
 from reference_model.systems import FloatArray
 
@@ -16,24 +16,23 @@ ON_SURFACE = 1e-9
 
 
 @part
-def has_stop(law: Law) -> bool:
-    """Return whether the stop begins at some distance."""
-    return law.stop > 0.0 and law.gap > 0.0
-
-
-@part
-def has_rim(law: Law) -> bool:
-    """Return whether friction has infinite slopes where a point of the rim rests."""
-    return law.outer > 0.0 and law.load == 0.0 and law.friction > 0.0
+def exists(which: int, law: Law) -> bool:
+    """Return whether forces have a kink where the stop begins, or where a point at the edge of the contact rests."""
+    if which == SIDE_OF_STOP:
+        return law.stop > 0.0 and law.gap > 0.0
+    if which == SIDE_OF_RIM:
+        return law.friction > 0.0 and law.outer > 0.0
+    return law.friction > 0.0 and law.load > 0.0 and law.inner > 0.0
 
 
 @part
 def value_of(which: int, y: Unknowns, law: Law) -> float:
-    """Return the deflection beyond the stop, or the lead U − W of the centre over the rim."""
+    """Return the deflection beyond the stop, or the lead U − W of the centre over an edge of the contact."""
     if which == SIDE_OF_STOP:
         wx = y[0] - law.offset
         return math.sqrt(wx * wx + y[1] * y[1]) - law.gap
-    return math.sqrt(y[2] * y[2] + y[3] * y[3]) - law.outer * abs(y[4])
+    radius = law.outer if which == SIDE_OF_RIM else law.inner
+    return math.sqrt(y[2] * y[2] + y[3] * y[3]) - radius * abs(y[4])
 
 
 @part
@@ -44,14 +43,27 @@ def outward(y: Unknowns, law: Law) -> float:
 
 @part
 def sides(y: Unknowns, memory: FloatArray, law: Law) -> None:
-    """Store the sides of both surfaces."""
-    memory[SIDE_OF_STOP] = math.copysign(1.0, value_of(SIDE_OF_STOP, y, law))
-    memory[SIDE_OF_RIM] = math.copysign(1.0, value_of(SIDE_OF_RIM, y, law))
+    """Store the sides of all surfaces."""
+    for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
+        memory[which] = math.copysign(1.0, value_of(which, y, law))
+
+
+@part
+def crossed_any(y: Unknowns, memory: FloatArray, law: Law) -> bool:
+    """Return whether a surface was crossed, and store the new side."""
+    result = False
+    for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
+        if exists(which, law) and memory[which] * value_of(which, y, law) < 0.0:
+            memory[which] = -memory[which]
+            result = True
+    return result
 
 
 @part
 def may_cross(which: int, side: float, y: Unknowns, new: Unknowns, law: Law) -> bool:
     """Return whether a step crosses a surface, or may touch the stop and come back."""
+    if not exists(which, law):
+        return False
     if side * value_of(which, new, law) < 0.0:
         return True
     return which == SIDE_OF_STOP and side * outward(y, law) < 0.0 < side * outward(new, law)

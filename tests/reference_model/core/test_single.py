@@ -65,6 +65,21 @@ def test_overdamped_pin_creeps_as_in_closed_form(tolerance, duration):
     assert found.solution.steps < 500
 
 
+@pytest.mark.parametrize("contact", [None, Annulus(0.1, 0.2)], ids=["ring", "annulus"])
+def test_angle_after_a_thousand_turns(contact):
+    disc = DiscOnDisc(
+        mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.05, disc_speed=0.8, offset=0.1, polar_inertia=0.02,
+        contact_radius=0.2, shaft_damping=2.0, shaft_speed=83.0,
+    )  # fmt: skip
+    start, times = [0.15, 0.05, 0.0, 0.1, 0.0, 83.0], [0.0, 100.0]
+    found, tight = (
+        simulate(disc, start, times, tolerance=tolerance, compiled=True, contact=contact).at_end[2]
+        for tolerance in (1e-9, 1e-12)
+    )
+    assert abs(found - tight) < 13e-9
+    assert found > 8000.0
+
+
 RING = RandomMotion.of(1)
 
 
