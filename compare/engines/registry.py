@@ -218,10 +218,10 @@ exudyn_native = register(
 compiled = register(
     Engine(
         "compiled",
-        functools.partial(_simulate_reference, compiled=True),
+        functools.partial(_simulate_reference, compiled=None),
         EVERY_KIND,
-        nonlinear=False,
         kin="reference",
+        about="compiled is the reference by its compiled code, except discs on points with a nonlinear support.",
     ),
     on_request=True,
 )

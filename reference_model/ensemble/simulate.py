@@ -91,22 +91,23 @@ def simulate_ensemble(
 
 
 def require_supported(system: System) -> None:
-    """Raise ``ValueError`` naming the parameter if compiled code does not support a system."""
+    """Raise ``ValueError`` naming the parameter if the kernels of ensembles do not support a system."""
     if not system.linear_support:
         name = next(name for name in ("hardening", "stop_stiffness") if getattr(system, name) != 0.0)
         raise ValueError(
-            f"{name} = {getattr(system, name):g}: compiled runs need a linear support, because they compute release "
-            "and the surroundings of an equilibrium in closed form; set it to 0 or use reference_model.simulate"
+            f"{name} = {getattr(system, name):g}: ensembles and compiled discs on points need a linear support, "
+            "because they compute release and the surroundings of an equilibrium in closed form; set it to 0 or "
+            "simulate single motions"
         )
     if not is_supported(system):
         raise ValueError(
-            f"contact_points = {getattr(system, 'contact_points', None)}: compiled runs support up to {MOST_POINTS}; "
-            "for more use the continuous ring, contact_points = None"
+            f"contact_points = {getattr(system, 'contact_points', None)}: compiled code supports up to {MOST_POINTS}"
+            "; for more use the continuous ring, contact_points = None"
         )
 
 
 def is_supported(system: System) -> bool:
-    """Return whether compiled code supports a system."""
+    """Return whether the kernels of ensembles support a system."""
     return system.linear_support and (getattr(system, "contact_points", None) or 0) <= MOST_POINTS
 
 

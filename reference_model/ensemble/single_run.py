@@ -1,4 +1,4 @@
-"""Single trajectories by the compiled kernels."""
+"""Single trajectories of discs on points by the compiled kernels."""
 
 import time
 
@@ -6,24 +6,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.contact.contact_law import Contact, contact_of
+from reference_model.ensemble.disc.driver import follow_disc
 from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.ensemble.simulate import require_supported
 from reference_model.motion.nondimensional import Units
-from reference_model.systems import PinOnDisc, System, checked_state, checked_times, checked_tolerance
+from reference_model.systems import DiscOnDisc, checked_state, checked_times, checked_tolerance
 from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
 
 METHOD = "compiled DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
 
 
-def simulate_compiled(
-    system: System,
+def simulate_points(
+    system: DiscOnDisc,
     initial_state: ArrayLike,
     times: ArrayLike,
     *,
     tolerance: float = 1e-9,
     contact: Contact | None = None,
 ) -> Trajectory:
-    """Simulate like :func:`reference_model.simulate`, by the kernel of ensembles."""
+    """Simulate a disc on points like :func:`reference_model.simulate`, by the kernel of ensembles."""
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
     times = checked_times(times)
@@ -39,14 +40,7 @@ def simulate_compiled(
     duration = float(delays[-1]) if len(times) > 1 else unit
     states = np.full((len(times), system.state_size), np.nan)
     recording = Recording(delays, states, duration, ROUNDED * max(duration, unit))
-    if isinstance(system, PinOnDisc):
-        from reference_model.ensemble.pin.driver import follow_pin
-
-        follow_pin(system, state, tolerance, recording)
-    else:
-        from reference_model.ensemble.disc.driver import follow_disc
-
-        follow_disc(system, state, tolerance, recording)
+    follow_disc(system, state, tolerance, recording)
     recording.states[0] = state
     if not np.all(np.isfinite(recording.states)):
         raise SimulationError(

@@ -1,4 +1,4 @@
-"""Ensembles of discs and single discs; the plain reference follows contact points that rest until all slip."""
+"""Ensembles of discs, and single discs on points; the plain reference follows points that rest until all slip."""
 
 import math
 from collections.abc import Iterator

@@ -1,14 +1,12 @@
-"""Ensembles of pins and single pins."""
+"""Ensembles of pins."""
 
-from reference_model.ensemble.core.checkpoints import Checkpoints
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Results
-from reference_model.ensemble.pin.kernel import results_of, run_pins
+from reference_model.ensemble.pin.kernel import run_pins
 from reference_model.ensemble.pin.lanes import settings_of
 from reference_model.ensemble.pin.trapping import trapping_regions
-from reference_model.ensemble.recording import Recording
-from reference_model.ensemble.task import Task, in_chunks, parameter_table
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.ensemble.task import Task, in_chunks
+from reference_model.systems import PinOnDisc
 
 
 def simulate_pins(
@@ -22,12 +20,3 @@ def simulate_pins(
 
     in_chunks(run, task, threads)
     return results
-
-
-def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
-    local = tolerance_of_steps(tolerance)
-
-    def run(task: Task, checkpoints: Checkpoints) -> Results:
-        return results_of(task, settings_of(local, checkpoints=checkpoints))
-
-    recording.follow(parameter_table(pin), run, run, state, 0.0)

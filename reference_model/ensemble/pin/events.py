@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 
-from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, next_requested, recorded
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import EXTREME, IS_DUE, LOST, REST, RIGHTMOST, STIFF
 from reference_model.ensemble.core.laws import (
@@ -60,10 +59,8 @@ from reference_model.ensemble.pin.lanes import (
     put_position,
     put_slipping,
     rates_at,
-    record_requested,
     slip_at,
     state_at,
-    take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import (
     begin_slip,
@@ -93,8 +90,6 @@ def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Setting
     if flag & LOST:
         memory.end = UNDECIDED
         return True
-    if flag & IS_DUE and recorded(settings):
-        record_requested(lanes, lanes.now, memory, lane, later, law, settings)
     if flag & IS_DUE and later >= memory.duration - LANDING:
         if not landed(lanes, lane, memory.duration):
             return False
@@ -130,8 +125,7 @@ def check_region(
 ) -> bool:
     if lanes.watch[lane] == UNWATCHED and law.friction > 0.0 and memory.end == UNDECIDED:
         lanes.watch[lane] = TURNS
-    due = next_requested(memory, settings) if recorded(settings) else later + memory.tick
-    lanes.due[lane] = min(due, memory.duration - LANDING)
+    lanes.due[lane] = min(later + memory.tick, memory.duration - LANDING)
     if memory.end != UNDECIDED or not centres(lanes, memory, lane, law):
         return False
     lanes.watch[lane] = UNWATCHED
@@ -229,10 +223,6 @@ def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, setti
         left = 0.0
     if not t + left < memory.duration:
         return False
-    if recorded(settings):
-        record_requested(
-            lanes, lanes.trial, memory, lane, memory.duration if creeps else t + left, law, settings
-        )
     middle = z + 0.5 * left * (0.75 * w + 1j * law.disc_speed * z)
     z += left * (0.5 * w + 1j * law.disc_speed * middle)
     lanes.trial.state.way[lane] += 0.5 * s * left
@@ -263,8 +253,6 @@ def rest(
             memory.end, end = UNDECIDED, t
         if creeps or abs(pull(z, 0j, law)) <= law.friction:
             held = math.inf if creeps else release_delay(z, law)
-            if held > 0.0 and not creeps:
-                take_checkpoint(memory, STICKS, t, z, w, law, settings)
             if held == math.inf:
                 if memory.end == UNDECIDED or not creeps:
                     memory.end = STUCK
@@ -274,8 +262,6 @@ def rest(
             turn = law.disc_speed * min(held, end - t)
             z *= complex(math.cos(turn), math.sin(turn))
             t += held
-            if t < end and held > 0.0:
-                take_checkpoint(memory, SLIPS, t, z, w, law, settings)
             if t < end and held > 0.0 and released(lanes, memory, lane, z, t, law, settings):
                 end = t
         if t < end:

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from reference_model.ensemble.core.checkpoints import SLIPS, next_requested, recorded
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import MANY, row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, PinLaw, pull, units
@@ -29,7 +28,6 @@ from reference_model.ensemble.pin.lanes import (
     put_slipping,
     put_state,
     slip_at,
-    take_checkpoint,
 )
 from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
 from reference_model.systems import PinOnDisc
@@ -85,7 +83,6 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
     w = complex(vx + omega * y, vy - omega * x) / speed
     if abs(w) <= ROUNDING_OF_SLIP * abs(law.disc_speed * z):
         w = 0j
-    take_checkpoint(memory, SLIPS, 0.0, z, w, law, settings)
     if w == 0j and friction > 0.0:
         return rest(lanes, memory, lane, z, 0.0, law, settings, False)
     put_slipping(lanes, lane, z, w, law)
@@ -102,13 +99,9 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
 
 @inlined
 def _start_watching(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> None:
-    begin_watching = (
-        recorded(settings) or settings.early or settings.once or memory.duration <= LAST_TICKS * memory.tick
-    )
+    begin_watching = settings.early or settings.once or memory.duration <= LAST_TICKS * memory.tick
     lanes.watch[lane] = TURNS if begin_watching and lanes.law.friction[lane] > 0.0 else UNWATCHED
-    if recorded(settings):
-        lanes.due[lane] = min(next_requested(memory, settings), memory.duration - LANDING)
-    elif begin_watching:
+    if begin_watching:
         lanes.due[lane] = min(memory.tick, memory.duration - LANDING)
     else:
         lanes.due[lane] = memory.duration - LAST_TICKS * memory.tick

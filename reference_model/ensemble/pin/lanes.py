@@ -5,12 +5,6 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.core.checkpoints import (
-    ON_THE_WAY,
-    Checkpoints,
-    empty_checkpoints,
-    mark_requested,
-)
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
     EXTREME,
@@ -31,7 +25,7 @@ from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Mot
 from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, error_of, factor_of, moved, step
 from reference_model.ensemble.pin.end_states import FORM_SIZE
 from reference_model.ensemble.pin.slip import MOST_TERMS, pin_rates
-from reference_model.systems import ComplexArray, FloatArray, PinOnDisc
+from reference_model.systems import ComplexArray, FloatArray
 
 
 class PinState(NamedTuple):
@@ -269,7 +263,6 @@ class Settings(NamedTuple):
     once: bool
     regions: TrappingRegions
     series: ComplexArray
-    checkpoints: Checkpoints
 
 
 def no_regions() -> NDArray[Any]:
@@ -281,13 +274,11 @@ def settings_of(
     early: bool = False,
     once: bool = False,
     regions: NDArray[Any] | None = None,
-    checkpoints: Checkpoints | None = None,
 ) -> Settings:
     # The kernel is compiled for writable arrays only.
     known = no_regions() if regions is None else regions.copy()
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
-    room = empty_checkpoints(0, PinOnDisc.state_size) if checkpoints is None else checkpoints
-    return Settings(tolerance, early, once, known[0], series, room)
+    return Settings(tolerance, early, once, known[0], series)
 
 
 @inlined
@@ -300,32 +291,6 @@ def close_window(memory: PinMemory, end: int, t: float, way: float, radius: floa
     see_radius(memory.window, radius)
     fill(memory.found, measured(memory.window, t, way))
     memory.end, memory.window.kind = end, NO_WINDOW
-
-
-@scalar
-def take_checkpoint(
-    memory: PinMemory, kind: float, t: float, z: complex, w: complex, law: PinLaw, settings: Settings
-) -> None:
-    if memory.checkpoints < settings.checkpoints.size:
-        checkpoint = settings.checkpoints[memory.checkpoints]
-        memory.checkpoints += 1
-        checkpoint.kind, checkpoint.time = kind, t / memory.rate
-        put_state(checkpoint.state, memory, z, w, law)
-
-
-@scalar
-def record_requested(
-    lanes: PinLanes,
-    moment: Moment,
-    memory: PinMemory,
-    lane: int,
-    until: float,
-    law: PinLaw,
-    settings: Settings,
-) -> None:
-    if mark_requested(lanes, moment, memory, lane, until, settings):
-        t, z, w = moment.state.time[lane], position_at(moment, lane), slip_at(moment, lane)
-        take_checkpoint(memory, ON_THE_WAY, t, z, w, law, settings)
 
 
 @scalar

@@ -8,7 +8,7 @@ import pytest
 from plain_engines import stuck_state
 from random_systems import SYSTEMS, TIMES, RandomMotion
 
-from compare.claims.parameters import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9, FIG11
 from reference_model import DiscOnDisc, PinOnDisc, SimulationError, simulate
 from reference_model.ensemble import recording, simulate_ensemble, single_run
 from reference_model.ensemble.disc import driver
@@ -23,8 +23,8 @@ STICKING = DiscOnDisc(
 )  # fmt: skip
 HARD = replace(FIG9, friction_force=2.0 * FIG9.friction_force)
 
-MOST_TOLERANCES = 68.0
-"""Largest error of compiled runs in tolerances, which the documentation of ``simulate`` states."""
+MOST_TOLERANCES, OF_POINTS = 13.0, 68.0
+"""Largest errors of compiled runs in tolerances, which the documentation of ``simulate`` states."""
 
 
 def on_six(disc):
@@ -40,31 +40,33 @@ SEEDS = range(0, SYSTEMS, 2)
 
 
 @functools.cache
-def on_linear_support(seed):
-    """Return the compiled run of a random system on the support that compiled code covers."""
+def compiled_run(seed):
+    """Return the compiled run of a random system; points need a linear support."""
     random = RandomMotion.of(seed)
-    system = replace(random.system, hardening=0.0, stop_stiffness=0.0)
-    system = on_six(system) if getattr(system, "contact_points", None) else system
+    system = random.system
+    if getattr(system, "contact_points", None):
+        system = replace(on_six(system), hardening=0.0, stop_stiffness=0.0)
     return simulate(system, random.start, TIMES - 7.0, compiled=True)
 
 
 def test_random_systems_take_little_work():
     """The bound is 5 % above the measured 7,175 steps; a method of lower order would take more."""
-    assert sum(on_linear_support(seed).solution.steps for seed in SEEDS) < 7_540
+    assert sum(compiled_run(seed).solution.steps for seed in SEEDS) < 7_540
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_motions_and_phases_of_random_systems_agree_with_the_reference(seed):
-    found = on_linear_support(seed)
+    found = compiled_run(seed)
     start, times = RandomMotion.of(seed).start, found.times
     plain = simulate(found.system, start, times, tolerance=1e-11)
-    assert np.abs(found.states - plain.states).max() < MOST_TOLERANCES * 1e-9
+    allowed = 1e-9 * (OF_POINTS if getattr(found.system, "contact_points", None) else MOST_TOLERANCES)
+    assert np.abs(found.states - plain.states).max() < allowed
     assert found.states[0].tolist() == start.tolist()
     assert (found.phases[0].start, found.phases[-1].end) == (times[0], times[-1])
     assert [phase.kind for phase in found.phases] == [phase.kind for phase in lasting(plain)]
     for mine, other in zip(found.phases, lasting(plain), strict=True):
-        assert (mine.start, mine.end) == pytest.approx((other.start, other.end), abs=MOST_TOLERANCES * 1e-9)
-        np.testing.assert_allclose(mine.initial_state, other.initial_state, atol=MOST_TOLERANCES * 1e-9)
+        assert (mine.start, mine.end) == pytest.approx((other.start, other.end), abs=allowed)
+        np.testing.assert_allclose(mine.initial_state, other.initial_state, atol=allowed)
 
 
 @pytest.mark.parametrize(
@@ -80,10 +82,8 @@ def test_each_parameter_set_of_an_ensemble_moves_as_alone(system, start):
         np.testing.assert_array_equal(together.states[i], alone.states[0])
 
 
-@pytest.mark.parametrize(("system", "start"), [(FIG5, SECOND), (STICKING, stuck_state(STICKING, -0.08, 0.0))])
-def test_motion_depends_neither_on_the_requested_times_nor_on_room_for_checkpoints(
-    system, start, monkeypatch
-):
+def test_motion_depends_neither_on_the_requested_times_nor_on_room_for_checkpoints(monkeypatch):
+    system, start = on_six(STICKING), stuck_state(STICKING, -0.08, 0.0)
     times = np.linspace(0.0, 60.0, 1201)
     fine = simulate(system, start, times, compiled=True)
     monkeypatch.setattr(recording, "ROOM_TO_SPARE", 0)
@@ -93,12 +93,8 @@ def test_motion_depends_neither_on_the_requested_times_nor_on_room_for_checkpoin
     assert fine.solution.steps == coarse.solution.steps
 
 
-@pytest.mark.parametrize(
-    ("system", "start"),
-    [(FIG5, SECOND), (FIG8, [0.3, 0.0, 0.0, 0.1, 0.0, 0.5]), (on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0])],
-    ids=["pin", "ring", "six points"],
-)
-def test_single_run_and_ensemble_take_the_same_steps(system, start):
+def test_single_run_and_ensemble_of_points_take_the_same_steps():
+    system, start = on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0]
     found = simulate(system, start, [0.0, 37.3], tolerance=1e-8, compiled=True)
     alone, two = (
         simulate_ensemble(system, starts, duration=37.3, tolerance=1e-8, early_end=False)
@@ -118,7 +114,7 @@ def test_run_with_a_single_time_has_its_first_phase():
 def test_failed_run_reports_its_time(monkeypatch):
     monkeypatch.setattr(single_run, "ROUNDED", -0.1)  # as if the run had not reached its end
     with pytest.raises(SimulationError, match=r"the compiled run failed 50 s after its start"):
-        simulate(FIG5, SECOND, [0.0, 50.0], compiled=True)
+        simulate(on_six(FIG11), [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 50.0], compiled=True)
 
 
 LIGHT = DiscOnDisc(
@@ -188,10 +184,3 @@ def test_disc_on_points_uses_the_plain_reference_only_until_it_slips(monkeypatch
     assert sum(by_reference) < 0.4 * sum(slips)
     assert len(parts) <= len(found.stick_phases) + 1
     assert np.max(np.abs(found.states - tight.states)) < 1e-8  # of 4 m and 3.5 m/s
-
-
-@pytest.mark.parametrize("hardening", [0.0, 1.0])
-def test_run_is_compiled_by_default_if_the_system_allows_it(hardening):
-    pin = replace(FIG5, hardening=hardening)
-    method = simulate(pin, [0.1, 0.0, 0.0, 0.1], [0.0, 1.0], compiled=None).solution.method
-    assert method.startswith("compiled") == (hardening == 0.0)

@@ -137,7 +137,7 @@ def test_versions_of_the_sources_that_were_not_used_recently_are_deleted(days, k
         old.mkdir()
         last = time.time() - 86_400.0 * age
         os.utime(old, (last, last))
-    now = Path(compiled_once.folder_of(package))
+    now = Path(compiled_once.folder_of(package, compiled_once.digest_of(package)))
     expected = {now.name, *(f"package-{age}" for age in days[:kept])}
     assert {path.name for path in tmp_path.glob("package-*")} == expected
 
@@ -178,3 +178,32 @@ def test_a_kernel_runs_without_a_cache_on_a_full_disk(package, monkeypatch, caps
     said = capsys.readouterr().err
     assert said.startswith(f"Cannot use the compiled functions in '{package}")
     assert "No space left on device" in said
+
+
+SOURCE = '''
+BOUND = {bound}
+
+def double(x):
+    """{sentence}"""
+    return 2.0 * min(x, BOUND)
+'''
+
+
+def test_digest_of_functions_changes_with_their_text_and_constants_only():
+    def digest(bound=1.0, sentence="Return twice x.", change=("", "")):
+        namespace = {}
+        exec(SOURCE.format(bound=bound, sentence=sentence).replace(*change), namespace)
+        return compiled_once.digest_of_text([namespace["double"]])
+
+    assert digest() == digest(sentence="Return 2x.") == digest(change=("def", "# a comment\n\ndef"))
+    assert (
+        len({digest(), digest(bound=2.0), digest(change=("2.0", "3.0")), digest(change=("min", "max"))}) == 4
+    )
+
+
+def test_a_kernel_with_a_digest_of_its_own_is_loaded_after_an_edit_elsewhere(package):
+    kernel = package / "kernel.py"
+    kernel.write_text(KERNEL.replace("Path(__file__).parent)", "Path(__file__).parent, 'digest')"))
+    assert run() == (2.0, 0, 1)
+    kernel.write_text("# edited\n" + kernel.read_text())
+    assert run() == (2.0, 1, 0)

@@ -1,0 +1,12 @@
+"""The motion of a pin, a ring or an annulus, written once for interpreted and compiled runs.
+
+The functions are plain Python on numbers and tuples. numba compiles them when a compiled run is requested.
+
+- ``forces``: support, damper and friction;
+- ``rest``: friction at rest, release, and the beginning of slip;
+- ``explicit``, ``collocation``: steps of both methods, used by ``slip`` and ``stiff``;
+- ``surfaces``: the kinks of the forces;
+- ``recording``: the motion at the requested times;
+- ``run``, ``memory``: the sequence of phases, in calls of bounded length;
+- ``single``: one trajectory.
+"""

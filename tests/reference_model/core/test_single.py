@@ -1,0 +1,129 @@
+"""Compiled runs of pins, rings and annuli: closed forms, interruptions, and the same bits as interpreted."""
+
+import _thread
+import cmath
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from random_systems import TIMES, RandomMotion
+
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9
+from reference_model import Annulus, DiscOnDisc, PinOnDisc, simulate
+from reference_model.core import single
+from reference_model.core.run import advance
+
+SECOND = list(FIG5_STARTS.values())[1]
+"""A start with nine stick phases."""
+
+SHAFT = {"polar_inertia": 0.02, "contact_radius": 0.2, "shaft_damping": 0.0, "shaft_speed": 0.0}
+
+
+@pytest.mark.parametrize("body", ["pin", "ring", "annulus"])
+@pytest.mark.parametrize("excess", [1e-15, 1e-13, 1e-11, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3, 3e-3])
+def test_body_whose_pull_exceeds_friction_by_a_hair_and_falls_slips_briefly(excess, body):
+    """Slip a·e·t − ½·|ȧ|·t² along the pull a ends after 2e·a/|ȧ|, to first order in the excess e."""
+    omega, place, offset, damping = 0.5, 0.3 * cmath.exp(5.5j), 1.0, 0.1
+    # a = p + q·exp(iωt)
+    turning = complex(omega**2 - 1.0, -damping * omega) * place
+    pull = abs(offset + turning)
+    rate = ((offset + turning).conjugate() * 1j * omega * turning).real / pull
+    parameters = {
+        "mass": 1.0, "stiffness": 1.0, "damping": damping, "friction_force": pull / (1.0 + excess),
+        "disc_speed": omega, "offset": offset,
+    }  # fmt: skip
+    v = 1j * omega * place
+    start, chosen = [place.real, place.imag, v.real, v.imag], {}
+    system = PinOnDisc(**parameters)
+    if body != "pin":
+        system = DiscOnDisc(**parameters, **SHAFT)
+        start[2:2], start[6:] = [0.0], [omega]
+    if body == "annulus":
+        chosen["contact"] = Annulus(0.1, 0.2)
+    found = simulate(system, start, [0.0, 1.0], compiled=True, **chosen)
+    assert [phase.kind for phase in found.phases] == ["slip", "stick"]
+    # The excess is known to rounding of the pull.
+    error = 2.0 * excess + 2e-4 + 3e-16 / excess
+    assert found.phases[0].end == pytest.approx(2.0 * excess * pull / -rate, rel=error)
+    assert found.solution.steps < 200
+
+
+@pytest.mark.parametrize("duration", [267.0, 500.0])
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 1e-7])
+def test_overdamped_pin_creeps_as_in_closed_form(tolerance, duration):
+    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=8.44, friction_force=0.00285, disc_speed=0.0, offset=0.0)
+    found = simulate(
+        pin, [1.0, 0.0, 0.0, 0.0], np.linspace(0.0, duration, 90), tolerance=tolerance, compiled=True
+    )
+    rates = np.roots([1.0, pin.damping, 1.0])
+    sizes = np.linalg.solve([[1.0, 1.0], rates], [1.0 - pin.friction_force, 0.0])
+    exact = pin.friction_force + np.exp(np.outer(found.times, rates)) @ sizes
+    assert [phase.kind for phase in found.phases] == ["slip"]
+    assert np.abs(found.states[:, 0] - exact).max() < tolerance
+    assert found.solution.steps < 500
+
+
+@pytest.mark.parametrize("contact", [None, Annulus(0.1, 0.2)], ids=["ring", "annulus"])
+def test_angle_after_a_thousand_turns(contact):
+    disc = DiscOnDisc(
+        mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.05, disc_speed=0.8, offset=0.1, polar_inertia=0.02,
+        contact_radius=0.2, shaft_damping=2.0, shaft_speed=83.0,
+    )  # fmt: skip
+    start, times = [0.15, 0.05, 0.0, 0.1, 0.0, 83.0], [0.0, 100.0]
+    found, tight = (
+        simulate(disc, start, times, tolerance=tolerance, compiled=True, contact=contact).at_end[2]
+        for tolerance in (1e-9, 1e-12)
+    )
+    assert abs(found - tight) < 13e-9
+    assert found > 8000.0
+
+
+RING = RandomMotion.of(1)
+
+
+@pytest.mark.parametrize(
+    ("system", "start"), [(FIG5, SECOND), (RING.system, RING.start)], ids=["pin", "ring"]
+)
+def test_motion_depends_neither_on_the_requested_times_nor_on_the_length_of_a_call(
+    system, start, monkeypatch
+):
+    times = np.linspace(0.0, 60.0, 601)
+    fine = simulate(system, start, times, compiled=True)
+    monkeypatch.setattr(single, "MOST_WORK", 1.0)
+    coarse = simulate(system, start, times[::50], compiled=True)
+    np.testing.assert_array_equal(fine.states[::50], coarse.states)
+    assert fine.stick_times.tolist() == coarse.stick_times.tolist()
+    assert fine.solution.steps == coarse.solution.steps
+    assert fine.stick_phases
+
+
+@pytest.mark.parametrize("seed", [0, 1, 9, 13, 24, 40])
+def test_compiled_code_computes_the_same_bits_as_python(seed):
+    random = RandomMotion.of(seed)
+    system, times = random.system, TIMES[TIMES < 4.0]
+    found = simulate(system, random.start, times, compiled=True)
+    plain = single.simulate_by(advance, system, random.start, times)
+    np.testing.assert_array_equal(found.states, plain.states)
+    assert [phase.start for phase in found.phases] == [phase.start for phase in plain.phases]
+
+
+def test_long_run_can_be_interrupted():
+    pin = replace(FIG5, damping=1e-5, friction_force=1e-6)
+    simulate(pin, SECOND, [0.0, 1.0], compiled=True)  # compiles
+    timer = threading.Timer(0.2, _thread.interrupt_main)
+    began = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        simulate(pin, SECOND, [0.0, 1e6], compiled=True)
+    assert time.monotonic() - began < 2.0
+
+
+def test_default_run_of_a_disc_on_points_is_compiled_on_a_linear_support_only():
+    six = replace(FIG9, contact_points=6)
+    methods = [
+        simulate(system, [0.1, 0.0, 0.0, 0.0, 0.1, 0.0], [0.0, 1.0], compiled=None).solution.method
+        for system in (six, replace(six, hardening=1.0), replace(FIG9, hardening=1.0))
+    ]
+    assert [method.startswith("compiled") for method in methods] == [True, False, True]
