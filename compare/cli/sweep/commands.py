@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from reference_model.systems import System
 
 
-MOST_POINTS = 100_000_000
-
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
     "disc": ("x=-0.1:0.1:65", "vx=-0.1:0.1:65"),
@@ -239,8 +237,6 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
     if axes[0].name == axes[1].name:
         raise ValueError(f"{axes[0].name} is on both axes; --x and --y must be different quantities")
-    if (points := axes[0].points * axes[1].points) > MOST_POINTS:
-        raise ValueError(f"grid too large: {points:g} points, the limit is {MOST_POINTS:g}")
     return axes
 
 
