@@ -26,6 +26,7 @@ Rounds: TypeAlias = Generator[Numbers, Ends, Any]
 Trajectories: TypeAlias = tuple[FloatArray, dict[str, FloatArray]]
 """Initial states of shape (n, 4 or 6) and the swept parameters, each of shape (n,)."""
 
+MOST_POINTS = 100_000_000
 BASES = 2  # independent samples for the sensitivities
 
 
@@ -53,6 +54,8 @@ class Plan(ABC):
             checked_state(self.system, start)
         counts = [len(starts), *(of_kind.get(name, 1) for name in ("samples", "coarse"))]
         axes = [of_kind[name] for name in ("x", "y") if name in of_kind]
+        if (points := math.prod(axis.points for axis in axes)) > MOST_POINTS:
+            raise ValueError(f"grid too large: {points:g} points, the limit is {MOST_POINTS:g}")
         names = {one.name for one in (*axes, *of_kind.get("varied", ()))}
         positive = 0.0 < self.duration < math.inf and min(counts) > 0 and self.seed >= 0
         if not positive or not names <= units(self.system).keys():

@@ -28,11 +28,10 @@ from compare.cli.sweep.run import redraw
 from compare.output.outside_text import one_of
 
 if TYPE_CHECKING:
+    from compare.sweep.plan import Plan
     from compare.sweep.quantities import Axis
     from reference_model.systems import System
 
-
-MOST_POINTS = 100_000_000
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
@@ -111,10 +110,12 @@ def sweep_basin(
         _check_states(common["system"], state, list(names), axes)
         if random is not None and coarse is not None:
             raise ValueError("--coarse cannot be combined with --random")
-    if random is None:
-        return request.run(Basin(**common, start=state, x=axes[0], y=axes[1], coarse=coarse or COARSE))
-    ranges = [Axis(axis.name, axis.low, axis.high, 2) for axis in axes]
-    return request.run(RandomBasin(**common, start=state, x=ranges[0], y=ranges[1], samples=random))
+        if random is None:
+            plan: Plan = Basin(**common, start=state, x=axes[0], y=axes[1], coarse=coarse or COARSE)
+        else:
+            ranges = [Axis(axis.name, axis.low, axis.high, 2) for axis in axes]
+            plan = RandomBasin(**common, start=state, x=ranges[0], y=ranges[1], samples=random)
+    return request.run(plan)
 
 
 @sweep.command("map", cls=Command)
@@ -143,7 +144,8 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
         _check_parameters(common["system"], axes)
         names = components(common["system"])
         states = tuple(_start(request.system, start, names) for start in starts or [""])
-    return request.run(Map(**common, starts=states, x=axes[0], y=axes[1]))
+        plan = Map(**common, starts=states, x=axes[0], y=axes[1])
+    return request.run(plan)
 
 
 @sweep.command("uncertainty", cls=Command)
@@ -174,7 +176,8 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
         _check_varied(names)
         _check_given_once({"--set": request.set_names(), "--start": _names_of(start)}, "--vary", names)
         state = _start(request.system, start, components(common["system"]))
-    return request.run(Uncertainty(**common, start=state, varied=varied, samples=samples))
+        plan = Uncertainty(**common, start=state, varied=varied, samples=samples)
+    return request.run(plan)
 
 
 @sweep.command("continuation", cls=Command)
@@ -211,7 +214,8 @@ def sweep_continuation(
             one_of("component", name, components(common["system"]))
         _check_given_once({"--start": _names_of(start)}, "--vary", names)
         state = _start(request.system, start, components(common["system"]))
-    return request.run(Continuation(**common, start=state, x=axis, varied=varied, samples=samples))
+        plan = Continuation(**common, start=state, x=axis, varied=varied, samples=samples)
+    return request.run(plan)
 
 
 @sweep.command("figures", cls=Command)
@@ -233,8 +237,6 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
     if axes[0].name == axes[1].name:
         raise ValueError(f"{axes[0].name} is on both axes; --x and --y must be different quantities")
-    if (points := axes[0].points * axes[1].points) > MOST_POINTS:
-        raise ValueError(f"grid too large: {points:g} points, the limit is {MOST_POINTS:g}")
     return axes
 
 
@@ -315,6 +317,8 @@ def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
     try:
         shock = smallest_shock(pin, tolerance=tolerance)
         checked = by_bisection(shock)
+    except ArithmeticError:
+        raise BadInputError("the parameters differ by too many orders of magnitude to find a shock") from None
     except (ValueError, RuntimeError) as error:
         raise BadInputError(str(error)) from None
     difference = abs(checked / shock.speed - 1.0)

@@ -213,6 +213,10 @@ FORGED = [
     {"tolerance": 1.0},
     {"x": None},
     {"x": {"name": "colour", "low": 0.0, "high": 1.0, "points": 3}},
+    {
+        "x": {"name": "disc_speed", "low": 1.0, "high": 2.0, "points": 100_000},
+        "y": {"name": "friction_force", "low": 0.1, "high": 0.2, "points": 100_000},
+    },
 ]
 
 

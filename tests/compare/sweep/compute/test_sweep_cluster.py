@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager, suppress
+from types import SimpleNamespace
 
 import pytest
 from distributed import Client, LocalCluster
@@ -168,3 +169,13 @@ def test_a_worker_with_other_code_or_store_writes_nothing(other, error, sentence
     with pytest.raises(error, match=sentence):
         run(store, Elsewhere(otherwise), silent)
     assert marks(tmp_path) == set()
+
+
+def test_a_task_of_a_frozen_worker_is_given_to_another_one():
+    held = SimpleNamespace(processing=lambda: {"frozen": ("late",), "other": ()})
+    one = Cluster.__new__(Cluster)
+    one._client = held
+    now = time.monotonic()
+    sent = {"late": (None, now - 100.0), "young": (None, now)}
+    assert one._late(sent, 60.0) == [("late", ["other"])]
+    assert one._late(sent, 200.0) == []
