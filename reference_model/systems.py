@@ -23,7 +23,7 @@ MOST_COUNT = 1_000_000
 """Largest number of samples and other parts, because more would exhaust the memory."""
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest positive parameter, and largest size of any: products of several then stay finite."""
+"""Smallest positive parameter, and largest size of any and of a state: products of several then stay finite."""
 
 MOST_RATIO = 1e25
 """Largest rate in 1/s and largest m·R²/J: powers stay finite, and no integrator could follow faster rates."""
@@ -195,9 +195,6 @@ UNITS = {name: unit for name, unit, _ in PARAMETERS[DiscOnDisc]}
 
 SMALLEST_TOLERANCE = 1e-14
 """Smallest tolerance that double precision can reach."""
-
-LARGEST_STATE = 1e50
-"""Largest state component in SI units: forces and energies of hardening springs stay finite."""
 
 ANGLE = 2
 """Index of the angle in the state of a disc."""
@@ -371,10 +368,10 @@ def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
             f"initial_state has shape {state.shape}: "
             f"{type(system).__name__} takes {system.state_size} numbers"
         )
-    if np.any(abs(state) > LARGEST_STATE):
+    if np.any(abs(state) > MOST):
         i = int(np.argmax(abs(state)))
         raise ValueError(
-            f"initial_state[{i}] = {state[i]:g}: it must not be larger than {LARGEST_STATE:g}, "
+            f"initial_state[{i}] = {state[i]:g}: it must not be larger than {MOST:g}, "
             "or powers of it overflow"
         )
     return state

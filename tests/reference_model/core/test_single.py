@@ -110,14 +110,14 @@ def test_compiled_code_computes_the_same_bits_as_python(seed):
 
 
 def test_long_run_can_be_interrupted():
-    pin = replace(FIG5, damping=1e-5, friction_force=1e-6)
-    simulate(pin, SECOND, [0.0, 1.0], compiled=True)  # compiles
+    start = [0.1, 0.0, 0.03, 0.0]
+    simulate(FIG5, start, [0.0, 1.0], compiled=True)  # compiles
     timer = threading.Timer(0.2, _thread.interrupt_main)
-    began = time.monotonic()
+    began = time.process_time()
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        simulate(pin, SECOND, [0.0, 1e6], compiled=True)
-    assert time.monotonic() - began < 2.0
+        simulate(FIG5, start, [0.0, 1.4e6], compiled=True)
+    assert time.process_time() - began < 1.0  # the whole run takes 2 s
 
 
 def test_default_run_of_a_disc_on_points_is_compiled_on_a_linear_support_only():
