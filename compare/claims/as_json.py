@@ -99,6 +99,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
 def claim_from_json(content: dict[str, Any]) -> Claim:
     """Return the claim from the output of ``claim_as_json``."""
     alike = {field.name: content[field.name] for field in fields(Claim) if field.name in content}
-    numbers = {name: float(content[name]) for name in ("resolution", "negligible", "doubt")}
-    budget = ErrorBudget(content["numerical_error"], model=content["model_error"], **numbers)
+    names = {"model": "model_error", "resolution": "resolution", "negligible": "negligible", "doubt": "doubt"}
+    numbers = {name: float(content[stored]) for name, stored in names.items()}
+    budget = ErrorBudget(np.array(content["numerical_error"], dtype=float), **numbers)
     return Claim(**alike, budget=budget, identity=content["id"])

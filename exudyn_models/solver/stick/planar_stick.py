@@ -31,6 +31,9 @@ from reference_model.systems import FloatArray
 NEGLIGIBLE = 1e-9
 """Largest singular value of possible slips, or change of a direction, that counts as zero."""
 
+MOST_SHARE, TINY = 1e30, float(np.finfo(float).tiny)
+"""Load share of a contact whose friction vanishes, and least friction in N: shares stay finite."""
+
 
 @dataclass(eq=False)
 class PlanarStick(AxialStick):
@@ -133,7 +136,8 @@ class PlanarStick(AxialStick):
         else:
             slip = resisted_slip(load, np.ascontiguousarray(columns), contact)
         slip = slip / self.potential_of(slip)
-        return float(load @ slip) / friction, slip
+        needed = float(load @ slip)
+        return needed / max(friction, needed / MOST_SHARE, TINY), slip
 
     def holding_force(self, t: float) -> float:
         """Return the static friction in N."""
