@@ -17,6 +17,7 @@ from typing import Literal
 from fmu_models.description import build_description, description, token_of
 from fmu_models.header import header, tables
 from fmu_models.variables import Model
+from reference_model.systems import require_kind, require_whole
 
 FOLDER = Path(__file__).parent / "sources"
 
@@ -106,6 +107,9 @@ def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
     Raises ``ValueError`` if the file name does not end with .fmu, as the standard requires, ``HeadersMissingError``
     without FMPy, ``RuntimeError`` if the compiler fails, and ``OSError`` if the file cannot be written.
     """
+    require_kind("model", model, Model)
+    require_kind("file", file, Path)
+    require_whole("fmi", fmi, least=2, most=3)
     if file.suffix.lower() != ".fmu":
         raise ValueError(f"output = {str(file)!r}: the name of a unit must end with .fmu")
     sources = sources_of(model, fmi)

@@ -1,10 +1,11 @@
 """The paper's systems: frozen, validated parameters in SI units."""
 
+import inspect
 import math
 import re
 import reprlib
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from numbers import Integral
 from typing import Any, ClassVar, TypeAlias
@@ -214,22 +215,24 @@ def real_numbers(name: str, values: Any) -> FloatArray:
     an array, such as a series of pandas. Raises ``ValueError`` for everything else: truth values, text, dates,
     complex numbers, masked elements, numbers with a unit, and rows of unequal length.
     """
-    said = f"{name} = {shown(values)}"
     if np.ma.is_masked(values):
-        raise ValueError(f"{said}: it must not contain masked elements; fill or remove them")
+        raise ValueError(
+            f"{name} = {shown(values)}: it must not contain masked elements; fill or remove them"
+        )
     if not isinstance(values, (int, float)) and (
         unit := getattr(values, "units", getattr(values, "unit", None))
     ):
-        raise ValueError(f"{said}: it has the unit {unit}; convert it to SI units and pass the plain numbers")
+        raise ValueError(f"{name} = {shown(values)}: it has the unit {unit}; pass plain numbers in SI units")
     array = np.asarray(values, dtype=None if hasattr(values, "__array__") else object)
     kinds = {type(value) for value in array.flat} if array.dtype == object else {array.dtype.type}
     if not all(issubclass(kind, _NUMBERS) and not issubclass(kind, _NO_NUMBERS) for kind in kinds):
         rule = "contain only numbers, in rows of equal length" if array.ndim else "be a number"
-        raise ValueError(f"{said}: it must {rule}")
+        raise ValueError(f"{name} = {shown(values)}: it must {rule}")
     try:
         return np.array(array, dtype=float, order="C")
     except OverflowError:  # an integer larger than any float
-        raise ValueError(f"{said}: it must be finite, at most {np.finfo(float).max:.2g} in size") from None
+        largest = f"{np.finfo(float).max:.2g}"
+        raise ValueError(f"{name} = {shown(values)}: it must be finite, at most {largest} in size") from None
 
 
 _NUMBERS, _NO_NUMBERS = (int, float, np.integer, np.floating), (bool, np.timedelta64)
@@ -291,15 +294,32 @@ def positive_number(name: str, value: Any, unit: str) -> float:
 
 def require_whole(name: str, value: int, *, least: int, most: int = MOST_COUNT) -> None:
     """Raise ``ValueError`` unless ``value`` is an integer from ``least`` to ``most``."""
-    whole = isinstance(value, Integral) and not isinstance(value, _NO_NUMBERS)
-    if not (whole and least <= value <= most):
+    if not (isinstance(value, Integral) and not isinstance(value, _NO_NUMBERS) and least <= value <= most):
         raise ValueError(f"{name} = {shown(value)}: it must be a whole number >= {least} and <= {most}")
 
 
-def require_callable(name: str, value: Any) -> None:
-    """Raise ``ValueError`` unless ``value`` can be called."""
-    if not callable(value):
-        raise ValueError(f"{name} = {shown(value)}: it must be a function")
+def require_callable(name: str, value: Any, *arguments: str) -> None:
+    """Raise ``ValueError`` unless ``value`` is a function, which takes these positional ``arguments`` if given."""
+    try:
+        if arguments or not callable(value):
+            inspect.signature(value).bind(*arguments)
+    except TypeError:
+        of = f" of {', '.join(arguments)}" if arguments else ""
+        raise ValueError(f"{name} = {shown(value)}: it must be a function{of}") from None
+    except ValueError:  # some functions in C have no signature
+        pass
+
+
+def require_choice(name: str, value: Any, allowed: Collection[str]) -> None:
+    """Raise ``ValueError`` unless ``value`` is one of the texts ``allowed``."""
+    if not isinstance(value, str) or value not in allowed:
+        raise ValueError(f"{name} = {shown(value)}: it must be one of {', '.join(allowed)}")
+
+
+def require_kind(name: str, value: Any, *kinds: type) -> None:
+    """Raise ``ValueError`` unless ``value`` is an instance of one of ``kinds``."""
+    if not isinstance(value, kinds):
+        raise ValueError(f"{name} = {shown(value)}: it must be a {' or a '.join(k.__name__ for k in kinds)}")
 
 
 Place: TypeAlias = tuple[float, float, float]
@@ -317,7 +337,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
     try:
         given = [tuple(place) for place in places]
     except TypeError:
-        raise ValueError(f"{name} = {places!r}: it must be a list of (x, y, share)") from None
+        raise ValueError(f"{name} = {shown(places)}: it must be a list of (x, y, share)") from None
     result: list[Place] = []
     for i, place in enumerate(given):
         if len(place) != 3:
@@ -339,10 +359,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
 
 def require_system(system: System, *allowed: type[System]) -> None:
     """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default either class."""
-    allowed = allowed or (PinOnDisc, DiscOnDisc)
-    if not isinstance(system, allowed):
-        names = " or a ".join(kind.__name__ for kind in allowed)
-        raise ValueError(f"system = {system!r}: it must be a {names}")
+    require_kind("system", system, *(allowed or (PinOnDisc, DiscOnDisc)))
 
 
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:

@@ -88,6 +88,8 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
         "numerical_error": as_json(claim.budget.numerical),
         "model_error": claim.budget.model,
         "resolution": as_json(claim.budget.resolution),
+        "negligible": as_json(claim.budget.negligible),
+        "doubt": claim.budget.doubt,
         "grade": "" if claim.grade is None else claim.grade.value,
         "verdict": claim.verdict.value,
         "id": claim.identity,
@@ -97,7 +99,6 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
 def claim_from_json(content: dict[str, Any]) -> Claim:
     """Return the claim from the output of ``claim_as_json``."""
     alike = {field.name: content[field.name] for field in fields(Claim) if field.name in content}
-    budget = ErrorBudget(
-        content["numerical_error"], model=content["model_error"], resolution=float(content["resolution"])
-    )
+    numbers = {name: float(content[name]) for name in ("resolution", "negligible", "doubt")}
+    budget = ErrorBudget(content["numerical_error"], model=content["model_error"], **numbers)
     return Claim(**alike, budget=budget, identity=content["id"])

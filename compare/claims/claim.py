@@ -70,7 +70,7 @@ NEGLIGIBLE = GRADES[Grade.EXACT]
 """Largest relative difference that does not matter in a study, whose claims must fail for small faults."""
 
 DOUBT = 3.0
-"""Uncertainty factor of an error estimate beyond the resolution, because two coarse runs show little about errors."""
+"""Uncertainty factor of an error that two runs of an engine show, if it lies beyond the resolution."""
 
 
 @dataclass(frozen=True)
@@ -81,20 +81,29 @@ class ErrorBudget:
     - ``model``: size of the first neglected term of an approximation; zero for an identity.
     - ``resolution``: largest total error of a conclusive agreement. Beyond it the claim may agree to a coarser grade.
     - ``negligible``: largest difference that does not matter; the resolution unless given.
+    - ``doubt``: factor, >= 1, that a total error beyond the resolution may be too small.
     """
 
     numerical: FloatArray
     model: float
     resolution: float
     negligible: float
+    doubt: float
 
     def __init__(
-        self, numerical: ArrayLike, *, resolution: float, model: float = 0.0, negligible: float = math.inf
+        self,
+        numerical: ArrayLike,
+        *,
+        resolution: float,
+        model: float = 0.0,
+        negligible: float = math.inf,
+        doubt: float = 1.0,
     ) -> None:
         object.__setattr__(self, "numerical", np.asarray(numerical, dtype=float))
         object.__setattr__(self, "model", float(model))
         object.__setattr__(self, "resolution", float(resolution))
         object.__setattr__(self, "negligible", min(float(negligible), self.resolution))
+        object.__setattr__(self, "doubt", float(doubt))
         if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
             raise ValueError(
                 f"error budget: numerical and model errors must be >= 0 (model = {self.model:g}), "
@@ -276,8 +285,8 @@ class Claim:
     def verdict(self) -> Verdict:
         """Verdict: differs beyond both budget and resolution, or without a number.
 
-        A budget beyond the resolution must be exceeded ``DOUBT`` times. Otherwise the claim agrees if the budget is
-        finite, covers the difference and lies within the resolution or a grade, else it is inconclusive.
+        A budget beyond the resolution must be exceeded ``budget.doubt`` times. Otherwise the claim agrees if the
+        budget is finite, covers the difference and lies within the resolution or a grade, else it is inconclusive.
         """
         if np.any(self._wrong):
             return Verdict.DIFFERS
@@ -295,7 +304,8 @@ class Claim:
     @property
     def _wrong(self) -> NDArray[np.bool_]:
         """True where a number is missing, or the difference matters and exceeds even a doubtful budget."""
-        doubt = np.where((self.budget.total > self.budget.resolution) & (not self.answers), DOUBT, 1.0)
+        poor = (self.budget.total > self.budget.resolution) & (not self.answers)
+        doubt = np.where(poor, self.budget.doubt, 1.0)
         return ~self._open & ~((self.difference <= doubt * self._allowed) & np.isfinite(self.measured))
 
     @property

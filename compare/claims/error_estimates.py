@@ -172,16 +172,16 @@ def decided(
 ) -> tuple[Answer, str]:
     """Return the engine's answer, at a shorter step if its own leaves the claim open or fails, and a note.
 
-    An exception at a shorter step goes into the note if the engine's own step succeeded.
+    An exception at a shorter step goes into the note if the engine's own step succeeded. Shorter steps do not help an
+    engine of limited precision: in single precision, friction may be too weak to change the speed within a step.
     """
     began, share, note = processor_time(), 1.0, ""
     answer = _answer(ask, engine)
     while engine is not None and engine.step is not None and _fails(answer, is_open):
-        late = SHORTER * (processor_time() - began) > LONGEST
         failed = isinstance(answer, Exception)
-        if (late and (share > 1.0 or not failed)) or (
-            failed and share > MOST_SHORTER
-        ):  # the first call may compile
+        first = failed and share == 1.0  # it may have compiled
+        late = SHORTER * (processor_time() - began) > LONGEST and not first
+        if late or (share > MOST_SHORTER if failed else engine.noise > 0.0):
             break
         began, share = processor_time(), SHORTER * share
         shorter = _answer(ask, replace(engine, step=engine.step / share))

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict
+from compare.claims.claim import DOUBT, GRADES, THEORY, Basis, Claim, ErrorBudget, Grade, Kind, Verdict
 from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
@@ -300,7 +300,9 @@ class Study:
                     continue
                 try:
                     ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
-                    found, note = decided(engine, ask, _is_open)
+                    found, note = decided(
+                        engine, ask, lambda it: it is not None and it[0].verdict is Verdict.INCONCLUSIVE
+                    )
                 except DeclaredLackError as error:
                     lacking.append(printable(error))
                     continue
@@ -325,7 +327,7 @@ class Study:
         self,
         declared: Declared,
         case: str,
-        arguments: tuple[Any, ...],
+        arguments: Sequence[Any],
         few: Mapping[str, Any],
         engine: Engine | None,
     ) -> tuple[Claim, Data] | None:
@@ -334,6 +336,9 @@ class Study:
         except NoOrbitError as error:
             if engine is None:
                 raise
+            if error.residual < GRADES[Grade.FINE]:
+                why = f"is too inaccurate for shooting, because it misses its start by {error.residual:.1e}"
+                raise UnsupportedSystemError(f"{engine.name} {why}; declare its precision") from None
             raise RuntimeError(
                 f"{engine.name} has no periodic motion near that of exact Coulomb friction, so this claim cannot be "
                 f"measured; check its friction law and shorten its step ({str(error).partition(';')[0]})"
@@ -345,8 +350,7 @@ class Study:
             data, lost = _arrays(measured.data() if callable(measured.data) else measured.data), ""
         except Exception as error:  # a figure must not cost a verdict
             data, lost = {}, f"Not drawn, because of {type(error).__name__}: {printable(error)}."
-        notes = filter(None, (claim.note, claim.caution, lost))
-        return replace(claim, note=" ".join(notes)), data
+        return replace(claim, note=" ".join(filter(None, (claim.note, claim.caution, lost)))), data
 
     def _claim_of(self, declared: Declared, case: str, measured: Measured, engine: Engine | None) -> Claim:
         system = measured.system or self.system
@@ -354,16 +358,17 @@ class Study:
         resolution = declared.resolution if measured.resolution is None else measured.resolution
         if resolution is None:
             raise ValueError(
-                f"claim {declared.sentence!r}: no resolution given; set it in the declaration or in Measured"
+                f"claim {declared.sentence!r}: no resolution given, neither declared nor measured"
             )
-        return Claim(
+        doubt = 1.0 if engine is None else DOUBT
+        claim = Claim(
             declared.sentence_of(case),
             equation=declared.equation,
             kind=declared.kind,
             engine=THEORY if engine is None else engine.name,
             predicted=np.asarray(measured.predicted),
             measured=np.asarray(measured.value),
-            budget=ErrorBudget(measured.error, model=measured.model, resolution=resolution),
+            budget=ErrorBudget(measured.error, model=measured.model, resolution=resolution, doubt=doubt),
             parameters=known | dict(measured.parameters),
             source=measured.source or self.source,
             unit=declared.unit,
@@ -376,7 +381,8 @@ class Study:
             identity=declared.identity(self.name, case),
             size=None if measured.size is None else np.asarray(measured.size),
             axes=measured.axes,
-        ).strict
+        )
+        return claim.strict if engine is None or engine.is_smooth else claim
 
     def sentences(self) -> dict[str, str]:
         """Return the sentences about engines with their selectors in ``only``."""
@@ -388,10 +394,6 @@ class Study:
         return next(
             one.duration for one in self.declared for case, _ in one.cases() if part == one.part(case)
         )
-
-
-def _is_open(found: tuple[Claim, Data] | None) -> bool:
-    return found is not None and found[0].verdict is Verdict.INCONCLUSIVE
 
 
 def _arrays(data: Mapping[str, Any]) -> Data:

@@ -233,14 +233,14 @@ def _held(engine: Engine, pulls: Sequence[float]) -> float:
 def support(engine: Engine, parts: Mapping[str, Any] = probes.SUPPORTS) -> Shares:
     """Return the forces of spring, damper and offset without friction, or of other ``parts``."""
     ladder = Ladder.of(engine, functools.partial(probes.supports, engine, parts))
-    noise = SAFETY * engine.precision / (probes.SLIDES_FOR - probes.SETTLES_FOR)
+    noise = SAFETY * engine.noise / (probes.SLIDES_FOR - probes.SETTLES_FOR)
     return Shares(ladder.finest, ladder.error + noise)
 
 
 def far(engine: Engine) -> Shares:
     """Return the friction force far from the axis."""
     ladder = Ladder.of(engine, functools.partial(probes.far_away, engine))
-    noise = SAFETY * engine.precision * probes.FAR / (probes.FRICTION * probes.SLIDES_FOR)
+    noise = SAFETY * engine.noise * probes.FAR / (probes.FRICTION * probes.SLIDES_FOR)
     return Shares(ladder.finest, ladder.error + noise)
 
 
@@ -251,7 +251,7 @@ def moments(engine: Engine) -> Shares:
         engine, lambda tolerance: np.vstack([probes.moments(engine, points, tolerance) for points in kinds])
     )
     changes = np.max(np.abs(np.diff(ladder.values[-3:], axis=0)), axis=0)
-    noise = SAFETY * engine.precision * probes.SPEED / (probes.FRICTION * probes.SLIDES_FOR)
+    noise = SAFETY * engine.noise * probes.SPEED / (probes.FRICTION * probes.SLIDES_FOR)
     return Shares(ladder.finest, SAFETY * changes + noise)
 
 
@@ -275,7 +275,7 @@ def repeat(engine: Engine) -> Repeat:
     difference, shift = (
         float(np.max(np.abs(other - usual)) / np.max(np.abs(usual))) for other in (again, moved)
     )
-    return Repeat(difference, engine.precision, bool(np.array_equal(usual, coarse)), shift)
+    return Repeat(difference, engine.noise, bool(np.array_equal(usual, coarse)), shift)
 
 
 def lag(engine: Engine) -> Lag:
@@ -298,7 +298,7 @@ def motion(engine: Engine, name: str) -> Motion:
     ladder = Ladder.of(engine, question)
     errors = [_largest(value - _plane(case.exact())) for value in ladder.values]
     change = max(map(_largest, np.diff(ladder.values[-3:], axis=0)))
-    rounding = (ROUNDING + engine.precision) * max(map(abs, case.start))
+    rounding = (ROUNDING + engine.noise) * max(map(abs, case.start))
     order = falling(errors, step_ratio(engine))
     return Motion(tuple(errors), SAFETY * change + rounding, order, case.resolution, seconds)
 

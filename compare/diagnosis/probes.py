@@ -182,7 +182,7 @@ def slides(
         begun = v[0] - force * system.friction_force / system.mass * SETTLES_FOR
         vectors = (part for one in (force, mean, radial) for part in (one.real, one.imag))
         speed, free = abs(push.velocity), push.free_slip(times)
-        noise = 3.0 * engine.precision * system.mass * speed / (system.friction_force * push.lasts)
+        noise = 3.0 * engine.noise * system.mass * speed / (system.friction_force * push.lasts)
         left = 1.0 - np.max(np.abs(slip - free)) / np.max(np.abs(free))
         mean_slip = np.mean(np.abs(slip))
         distance = np.mean(np.abs(z))

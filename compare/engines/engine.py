@@ -3,19 +3,35 @@
 import functools
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import BadTrajectoryError, as_many_as, checked
-from compare.engines.precision import LEAST_PRECISE, USUAL_TOLERANCE, blurred, blurred_start
+from compare.engines.precision import (
+    LEAST_PRECISE,
+    SINGLE,
+    USUAL_TOLERANCE,
+    are_single,
+    blurred,
+    blurred_start,
+)
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
 from compare.output.outside_text import one_line, one_of
 from reference_model.support import Support
-from reference_model.systems import FloatArray, PinOnDisc, System, finite_number, require_flag
+from reference_model.systems import (
+    FloatArray,
+    PinOnDisc,
+    System,
+    finite_number,
+    require_callable,
+    require_flag,
+    require_kind,
+    require_whole,
+)
 from reference_model.trajectory import Trajectory
 
 KINDS = {
@@ -64,7 +80,8 @@ class Engine:
       reference nor start at rest on the master disc.
     - ``nonlinear``: True if it simulates supports that harden or have a stop.
     - ``phases``: True if its trajectories contain the stick phases. Otherwise ``compare.engines.stick`` finds them.
-    - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion.
+    - ``precision``: declared error of its states at any tolerance, relative to the lengths and speeds of the motion,
+      see ``noise``.
     - ``step``: fixed step in s for a tolerance of 1e-9, if any; ``function`` then takes ``step`` in place of
       ``tolerance``.
     - ``order``: order of the error in a fixed step.
@@ -91,14 +108,23 @@ class Engine:
     version: str = ""
     about: str = ""
     seed: int | None = None
+    _seen_noise: float = field(default=0.0, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        for name in ("name", "version", "about"):
+        for name in ("name", "kin", "version", "about"):
+            require_kind(name, getattr(self, name), str)
             object.__setattr__(self, name, one_line(getattr(self, name)))
+        if not self.name:
+            raise ValueError("name = '': it must not be empty")
+        require_callable("function", self.function)
+        require_kind("kinds", self.kinds, tuple, list)
         object.__setattr__(self, "kinds", tuple(self.kinds))
         for kind in self.kinds:
+            require_kind("kinds", kind, str)
             one_of("kind of system", kind, KINDS)
-        for name in ("sticks", "nonlinear", "phases"):
+        if self.seed is not None:
+            require_whole("seed", self.seed, least=0)
+        for name in ("sticks", "nonlinear", "phases", "contact_only"):
             require_flag(name, getattr(self, name))
         object.__setattr__(self, "precision", finite_number("precision", self.precision))
         if not 0.0 <= self.precision <= LEAST_PRECISE:
@@ -156,6 +182,19 @@ class Engine:
         return found
 
     @property
+    def noise(self) -> float:
+        """The declared precision, or that of single precision if the engine has returned such numbers."""
+        return self.precision or self._seen_noise
+
+    @property
+    def is_smooth(self) -> bool:
+        """True if errors depend smoothly on the tolerance, unlike those of a fixed step or a limited precision.
+
+        Otherwise differences within the resolution of a claim are negligible.
+        """
+        return self.step is None and self.noise == 0.0
+
+    @property
     def _asked(self) -> Callable[..., Any]:
         return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
@@ -179,9 +218,11 @@ class Engine:
     ) -> Trajectory:
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
-            if self.precision == 0.0:
+            if self.precision == 0.0 and are_single(found.states):
+                object.__setattr__(self, "_seen_noise", SINGLE)
+            if self.noise == 0.0:
                 return found
-            return blurred(found, self.precision, tolerance, np.asarray(initial_state, dtype=float))
+            return blurred(found, self.noise, tolerance, np.asarray(initial_state, dtype=float))
 
         def more(times: FloatArray) -> FloatArray:
             start = self._start(system, initial_state, tolerance)
@@ -190,10 +231,10 @@ class Engine:
         found = looked_at(answer, times)
         if (self.phases and found.phases) or any(phase.kind != "slip" for phase in found.phases):
             return found
-        coarseness = tolerance / USUAL_TOLERANCE
-        if self.step is not None:
-            coarseness = COARSE_STEP * self.step_at(tolerance) / self.step
-        return StatesOnly(found, more, coarseness, self.precision)
+        if self.step is None:
+            return StatesOnly(found, more, tolerance / USUAL_TOLERANCE, self.noise)
+        step = self.step_at(tolerance)
+        return StatesOnly(found, more, COARSE_STEP * step / self.step, self.noise, step)
 
     @property
     def root(self) -> float:

@@ -18,6 +18,22 @@ LEAST_PRECISE = 1e-3  # largest precision that an engine may declare
 OTHER_SIZE = 0.25  # noise at every second tolerance, relative to that at the others
 
 
+SINGLE = 1e-6
+"""Precision of states in single precision, with the rounding errors of some hundred steps."""
+
+FEW_DIGITS = 2.0**16
+"""Numbers with fewer binary digits, such as 0.75, say nothing about the precision."""
+
+
+def are_single(states: FloatArray) -> bool:
+    """Return whether at least four states after the first row need single precision, and none needs more."""
+    changed = states[1:][states[1:] != states[0]]
+    digits = np.frexp(changed)[0] * FEW_DIGITS
+    return bool(
+        np.count_nonzero(digits != np.rint(digits)) >= 4 and np.all(changed == changed.astype(np.float32))
+    )
+
+
 def blurred_start(system: System, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
     """Return ``state``, shape (4,) or (6,), with its position moved by noise of size ``precision``.
 

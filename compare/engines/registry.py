@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from compare.engines.engine import EVERY_KIND, Engine
 from compare.output.outside_text import one_of
+from reference_model.systems import require_flag, require_kind
 from reference_model.trajectory import Trajectory
 
 
@@ -80,6 +81,8 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 
     Raises ``ValueError`` if its name is taken.
     """
+    require_kind("engine", engine, Engine)
+    require_flag("on_request", on_request)
     if engine.name in _REGISTRY or engine.name == "theory":
         raise ValueError(f"engine {engine.name!r}: the name is taken")
     _REGISTRY[engine.name] = engine
@@ -94,7 +97,10 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Raises ``ValueError``
     if a name is unknown or cannot be imported.
     """
+    require_kind("names", names, Iterable)
     names = list(names)
+    for name in names:
+        require_kind("names", name, str)
     return told_apart(names, [_named(name) for name in names]) or tuple(
         engine for name, engine in _REGISTRY.items() if name not in _ON_REQUEST
     )

@@ -60,7 +60,7 @@ class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
     ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance
-    divided by 1e-9.
+    divided by 1e-9, ``precision`` and ``step`` (s) are those of the engine.
     """
 
     def __init__(
@@ -69,10 +69,11 @@ class StatesOnly(Trajectory):
         ask: Callable[[FloatArray], FloatArray],
         coarseness: float,
         precision: float = 0.0,
+        step: float = 0.0,
     ) -> None:
         for name in ("system", "times", "states", "solution"):
             object.__setattr__(self, name, getattr(told, name))
-        object.__setattr__(self, "_samples", _Samples(told.system, ask, coarseness, precision))
+        object.__setattr__(self, "_samples", _Samples(told.system, ask, coarseness, precision, step))
 
     _samples: _Samples
 
@@ -97,10 +98,16 @@ class _Span:
 
 class _Samples:
     def __init__(
-        self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float, precision: float
+        self,
+        system: System,
+        ask: Callable[[FloatArray], FloatArray],
+        coarseness: float,
+        precision: float,
+        step: float,
     ) -> None:
         self.system, self.ask, self.coarseness = system, ask, coarseness
-        self.least = max(LEAST, ABOVE_NOISE * precision) * math.sqrt(coarseness)
+        self._least = max(LEAST, ABOVE_NOISE * precision) * math.sqrt(coarseness)
+        self._in_a_step = step * _slowing(system)
         self.times = np.empty(0)
         self.states = np.empty((0, system.state_size))
         self.slip = np.empty(0)
@@ -145,6 +152,11 @@ class _Samples:
         natural = math.sqrt(self.system.stiffness / self.system.mass)
         turns = duration * max(natural, abs(self.system.disc_speed)) / (2.0 * math.pi)
         return min(max(PER_PERIOD, math.ceil(PER_PERIOD * turns)), MOST) + 1
+
+    @property
+    def least(self) -> float:
+        """Least slip in m/s for extrapolation. Less than friction stops within a step may be stick."""
+        return max(self._least * self.largest, self._in_a_step)
 
     def look(self, times: FloatArray) -> None:
         times = np.setdiff1d(times, self.times)
@@ -202,7 +214,7 @@ class _Samples:
         first, last = self._places(span)
         share = QUIETER if span.level < REST * self.largest else QUIET
         creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
-        level = max(span.level / CLOSER, ABOVE_CREEP * creep, self.least * self.largest)
+        level = max(span.level / CLOSER, ABOVE_CREEP * creep, self.least)
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
@@ -252,7 +264,7 @@ class _Samples:
         creep = self._quantile(float(self.times[first]), float(self.times[last]), 0.5)
         if len(slip) < 2 or np.median(np.abs(np.diff(slip))) > NOISE * creep:
             return span
-        level = max(self.least * self.largest, math.sqrt(creep * REST * self.largest))
+        level = max(self.least, math.sqrt(creep * REST * self.largest))
         return replace(span, level=level, degree=3)
 
     def _extrapolated(self, outwards: NDArray[np.intp], power: float, span: _Span) -> tuple[float, float]:
@@ -279,6 +291,12 @@ def slip_of(run: Trajectory) -> FloatArray:
         rim = system.contact_radius * (run.states[:, -1] - system.disc_speed)
         return np.asarray(np.hypot(run.slip_speed, rim))
     return run.slip_speed
+
+
+def _slowing(system: System) -> float:
+    """Return the largest deceleration of slip by friction in m/s²."""
+    rim = system.contact_radius**2 / system.polar_inertia if isinstance(system, DiscOnDisc) else 0.0
+    return system.friction_force * (1.0 / system.mass + rim)
 
 
 def _load(system: System, state: FloatArray) -> float:

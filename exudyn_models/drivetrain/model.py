@@ -21,7 +21,14 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.solver_run import quiet
-from reference_model.systems import FloatArray
+from reference_model.systems import (
+    FloatArray,
+    checked_tolerance,
+    finite_number,
+    positive_number,
+    require_callable,
+    require_kind,
+)
 
 ENERGY_UNIT = 1e3
 """Unit of energy of the energy balance in J."""
@@ -85,6 +92,15 @@ class DrivetrainModel:
         DOPRI5 computes it with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad, m/s,
         rad/s and ``ENERGY_UNIT``. Raises ``SimulationError`` if Exudyn fails or a state is not finite.
         """
+        until, sample_every, largest_step = (
+            positive_number(name, value, "s")
+            for name, value in (
+                ("until", until),
+                ("sample_every", sample_every),
+                ("largest_step", largest_step),
+            )
+        )
+        tolerance = checked_tolerance(tolerance)
         settings = exu.SimulationSettings()
         settings.solution.file.write = False
         settings.solution.sensors.writePeriod = sample_every
@@ -128,6 +144,13 @@ def build_drivetrain(
     Initial speeds are in rad/s, and ``shaft_torque``, in N m, is the initial torque of the torsional spring. Raises
     ``ValueError`` if a number is out of range.
     """
+    require_kind("drivetrain", drivetrain, Drivetrain)
+    engine_speed = finite_number("engine_speed", engine_speed)
+    gearbox_speed = finite_number("gearbox_speed", gearbox_speed)
+    shaft_torque = finite_number("shaft_torque", shaft_torque)
+    for name, given in (("engine_torque", engine_torque), ("vehicle_torque", vehicle_torque)):
+        if given is not None:
+            require_callable(name, given, "time", "angle", "speed")
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     twist = shaft_torque / drivetrain.torsional_stiffness if shaft_torque else 0.0

@@ -9,7 +9,14 @@ from exudyn_models.parts.radial_support import add_radial_support
 from exudyn_models.parts.ring_friction import AddFriction, add_ring_friction
 from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
 from exudyn_models.solver.solver_run import Model
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import (
+    DiscOnDisc,
+    FloatArray,
+    System,
+    checked_state,
+    finite_number,
+    require_callable,
+)
 
 MASTER_INERTIA = 1e30
 """Inertia in kg m² of the master disc, a body whose speed no contact torque can change.
@@ -32,6 +39,9 @@ def build_model(
     has a torsional damper to its shaft. ``initial_state`` refers to axes that turn with ``axes_speed`` (rad/s); the
     ground turns backwards in them.
     """
+    initial_state = checked_state(system, initial_state)
+    axes_speed = finite_number("axes_speed", axes_speed)
+    require_callable("friction", friction)
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     master = add_rotor(mbs, MASTER_INERTIA, system.disc_speed - axes_speed)

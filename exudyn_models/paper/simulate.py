@@ -28,6 +28,8 @@ from reference_model.systems import (
     checked_times,
     checked_tolerance,
     positive_number,
+    require_choice,
+    require_kind,
 )
 from reference_model.trajectory import Solution, Trajectory, phases_of
 
@@ -101,8 +103,8 @@ def simulate(
     state = checked_state(system, initial_state)
     grid = checked_times(times)
     tolerance = checked_tolerance(tolerance)
-    if solver not in METHODS:
-        raise ValueError(f"solver = {solver!r}: it must be 'explicit' or 'implicit'")
+    require_choice("solver", solver, METHODS)
+    require_kind("friction", friction, Friction)
     epsilon = None if regularisation is None else positive_number("regularisation", regularisation, "m/s")
     run = Run.of(system, state, grid, tolerance, epsilon)
     return run.trajectory(
@@ -129,8 +131,7 @@ def simulate_fixed_step(
     grid = checked_times(times)
     epsilon = positive_number("regularisation", regularisation, "m/s")
     step = positive_number("step", step, "s")
-    if integrator not in FIXED_STEP:
-        raise ValueError(f"integrator = {integrator!r}: it must be one of {', '.join(FIXED_STEP)}")
+    require_choice("integrator", integrator, FIXED_STEP)
     run = Run.of(system, state, grid, math.nan, epsilon)
     slip = SlipSolver(integrator, step / run.units.time, NEWTON_TOLERANCE * run.scales.force)
     friction = Friction(add_ring_friction, nothing_creeps)

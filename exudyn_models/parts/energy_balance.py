@@ -15,7 +15,7 @@ import numpy as np
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, at_assembly, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.solver_run import quiet
-from reference_model.systems import FloatArray, positive_number
+from reference_model.systems import FloatArray, positive_number, require_callable, require_kind
 
 Power: TypeAlias = Callable[[Any, float], float]
 """Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
@@ -103,12 +103,20 @@ def add_energy_balance(
         to an object without potential energy.
 
     """
+    require_kind("mbs", mbs, exu.MainSystem)
     unit = positive_number("unit", unit, "J")
+    for name, powers in (("gains", gains), ("losses", losses)):
+        require_kind(name, powers, Mapping)
+        for key, power in powers.items():
+            require_callable(f"{name}[{key!r}]", power, "mbs", "t")
+    require_kind("stored", stored, Sequence)
+    for i, energy in enumerate(stored):
+        require_callable(f"stored[{i}]", energy, "mbs")
     if not gains and not losses:
         raise ValueError("gains and losses are both empty: an energy balance needs at least one power")
     for name in gains:
         if name in losses:
-            raise ValueError(f"{name!r} names both a gain and a loss; use two names")
+            raise ValueError(f"gains, losses: {name!r} names both a gain and a loss; use two names")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)

@@ -20,7 +20,7 @@ from exudyn_models.solver.contacts import Contact, motion_of, places_of, present
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.stick.point_sticks import PointSticks
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, require_choice
 
 Quantity = Literal[
     "transmitted_moment",
@@ -115,8 +115,7 @@ class RingFriction:
         ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
         Raises ``ValueError`` for other quantities.
         """
-        if quantity not in get_args(Quantity):
-            raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
+        require_choice("quantity", quantity, get_args(Quantity))
         options = IN_MEMORY | options
         if quantity == "heat":
             return self._add_heat(options)

@@ -23,7 +23,7 @@ from exudyn_models.forces.slip_kinematics import (
     Kinds,
     frame,
 )
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, finite_numbers, require_kind, shown
 
 indices: Any = exu  # the index types are missing from its type hints
 
@@ -90,6 +90,7 @@ def checked_sides(
     Raises ``ValueError`` if a node is not allowed, both are the same, or one of the ``rotations`` is not a rotation
     matrix.
     """
+    require_kind("mbs", mbs, exu.MainSystem)
     disc = _side(mbs, "disc", disc_node, discs, rotations[1])
     other = _side(mbs, master, master_node, masters, rotations[0], or_ground=True)
     if other.node is not None and int(other.node) == int(disc.node):
@@ -205,17 +206,14 @@ def _side(
 def _checked_rotation(name: str, rotation: Any) -> FloatArray:
     if rotation is None:
         return np.eye(3)
-    try:
-        matrix = np.array(rotation, float)
-    except (TypeError, ValueError):
-        matrix = np.zeros(0)
+    matrix = finite_numbers(name, rotation)
     if (
         matrix.shape == (3, 3)
         and np.abs(matrix @ matrix.T - np.eye(3)).max() < PARALLEL
         and np.linalg.det(matrix) > 0.0
     ):
         return matrix
-    raise ValueError(f"{name} = {rotation!r}: it must be a rotation matrix of shape (3, 3)")
+    raise ValueError(f"{name} = {shown(rotation)}: it must be a rotation matrix of shape (3, 3)")
 
 
 def _marked(name: str, mbs: Any, index: Any) -> tuple[Any, FloatArray]:
@@ -277,7 +275,7 @@ def _frame_of_rotor(name: str, mbs: Any, node: Any) -> tuple[FloatArray, FloatAr
 
 def _checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int]) -> int:
     try:
-        kind = mbs.GetNode(node)["nodeType"]
+        kind = mbs.GetNode(None if isinstance(node, bool) else node)["nodeType"]
     except exu.ExudynIndexError:
         count = mbs.systemData.NumberOfNodes()
         raise ValueError(f"{name} {int(node)} does not exist: this model has {count} nodes") from None

@@ -38,7 +38,7 @@ from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
 from exudyn_models.solver.contacts import Connector, motion_of, places_of, register_support
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, items
-from reference_model.systems import FloatArray, finite_number
+from reference_model.systems import FloatArray, finite_numbers, require_choice, shown
 
 Quantity = Literal["deflection", "force", "stored_energy", "power"]
 
@@ -85,8 +85,7 @@ class RadialSupport:
         Raises ``ValueError`` for other quantities.
         """
         quantities = get_args(Quantity)
-        if quantity not in quantities:
-            raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(quantities)}")
+        require_choice("quantity", quantity, quantities)
         place = quantities.index(quantity)
 
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
@@ -188,11 +187,10 @@ def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
 
 
 def _checked_offset(offset: Sequence[float]) -> Offset:
-    try:
-        x, y = offset
-    except (TypeError, ValueError):
-        raise ValueError(f"offset = {offset!r}: it must be two numbers, x and y in m") from None
-    return finite_number("offset[0]", x), finite_number("offset[1]", y)
+    place = finite_numbers("offset", offset)
+    if place.shape != (2,):
+        raise ValueError(f"offset = {shown(offset)}: it must be two numbers, x and y in m")
+    return float(place[0]), float(place[1])
 
 
 def _add_springs(mbs: Any, node: Any, offset: Offset, law: Law, name: str) -> Any:

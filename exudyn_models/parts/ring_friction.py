@@ -53,7 +53,15 @@ from exudyn_models.solver.contacts import Contact
 from exudyn_models.solver.items import items
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from exudyn_models.solver.stick.point_sticks import PointSticks
-from reference_model.systems import FloatArray, Place, checked_places, finite_number, positive_number
+from reference_model.systems import (
+    FloatArray,
+    Place,
+    checked_places,
+    finite_number,
+    positive_number,
+    require_whole,
+    shown,
+)
 
 UNREGULARISED = 1e-200
 """Value of ε in m/s for exact stick, far below any slip of a sliding contact."""
@@ -145,7 +153,7 @@ def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None
     if thermal_node is None:
         return coefficient
     if not isinstance(thermal_node, ThermalNode):
-        raise ValueError(f"thermal_node = {thermal_node!r}: it must be a result of add_thermal_node")
+        raise ValueError(f"thermal_node = {shown(thermal_node)}: it must be a result of add_thermal_node")
     return thermal_node.with_temperature(coefficient)
 
 
@@ -253,11 +261,10 @@ def _checked_geometry(
         last, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
         points = density_of(pressure, last, radius)
         epsilon = positive_number("regularisation", regularisation, "m/s")
-    if held is not None and held not in range(1, 1 + points):
-        allowed = (
-            f"None, or the number of a point, 1 to {points}" if points > 0 else "None without contact points"
-        )
-        raise ValueError(f"held = {held}: it must be {allowed}")
+    if held is not None and points > 0:
+        require_whole("held", held, least=1, most=points)
+    elif held is not None:
+        raise ValueError(f"held = {shown(held)}: it must be None without contact points")
     return radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, last
 
 

@@ -16,7 +16,7 @@ import exudyn as exu
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.load_and_coefficient import Coefficient
 from exudyn_models.solver.items import CURRENT, add_integrals, at_assembly, node_sensor
-from reference_model.systems import finite_number, positive_number
+from reference_model.systems import finite_number, positive_number, require_kind
 
 ARGUMENT = "temperature"
 
@@ -104,6 +104,7 @@ def add_thermal_node(
     ``heat_capacity`` C > 0 is in J/K, ``conductance`` G >= 0 in W/K. ``surroundings`` T₀ and ``start``, by default
     T₀, are both in °C or both in K. Raises ``ValueError`` if a number is out of range.
     """
+    require_kind("mbs", mbs, exu.MainSystem)
     capacity = positive_number("heat_capacity", heat_capacity, "J/K")
     loss = checked_not_negative("conductance", conductance, " W/K")
     outside = finite_number("surroundings", surroundings)

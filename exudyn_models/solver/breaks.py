@@ -7,7 +7,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from reference_model.systems import finite_number
+from reference_model.systems import finite_numbers, shown
 
 GAP = 1e-13
 """Share of the run's duration omitted beside a break, so that no step sees both sides."""
@@ -16,7 +16,10 @@ GAP = 1e-13
 def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
     """Return the breaks in s; raise ``ValueError`` unless they increase and lie within the run."""
     start, end = options.startTime, options.endTime
-    result = [finite_number(f"breaks[{i}]", value) for i, value in enumerate(breaks)]
+    times = finite_numbers("breaks", breaks)
+    if times.ndim != 1:
+        raise ValueError(f"breaks = {shown(breaks)}: it must be a list of times")
+    result: list[float] = times.tolist()
     for i, (before, value) in enumerate(zip([start, *result], result, strict=False)):
         if not start < value < end:
             raise ValueError(

@@ -38,6 +38,7 @@ from exudyn_models.solver.stick.sticking_contacts import (
     sticking_contacts,
 )
 from exudyn_models.solver.stick.switching import run_switching
+from reference_model.systems import require_flag, require_kind
 from reference_model.trajectory import SimulationError, StepCount
 
 IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -79,7 +80,11 @@ def solve_dynamic(
         Any other error of Exudyn; an error in a function of a friction contact is its ``__cause__``.
 
     """
+    require_kind("mbs", mbs, exu.MainSystem)
+    require_kind("simulationSettings", simulationSettings, exu.SimulationSettings)
     solver = simulationSettings.timeIntegration.solverType if solverType is None else solverType
+    require_kind("solverType", solver, exu.DynamicSolverType)
+    require_flag("updateInitialValues", updateInitialValues)
     simulationSettings = copy.copy(simulationSettings)  # other runs may share them
     if not mbs.systemIsConsistent:
         mbs.Assemble()
@@ -160,7 +165,7 @@ def _solve(
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()
             if contacts:
-                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
+                changes = run_switching(mbs, simulationSettings, contacts, updateInitialValues, modes)
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
@@ -181,7 +186,9 @@ def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) ->
 def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> None:
     """Raise the cause of an error in a run, unless it is Exudyn's own."""
     raise_interrupt(error)
-    if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
+    if isinstance(
+        error.__cause__, (Warning, SimulationError)
+    ):  # of a check, a warning made an error by a filter
         raise error.__cause__ from None
     if isinstance(error, (exu.SolverError, exu.InternalError)):
         if massless := _singular(mbs, time == 0.0):

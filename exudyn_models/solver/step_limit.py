@@ -21,7 +21,7 @@ from exudyn_models.forces.stick_dampers import StickDampers
 from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.linear_matrices import matrices_of_model, singular_mass
 from exudyn_models.solver.solver_run import raise_interrupt
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, require_kind
 
 INTERVALS = {
     "ExplicitEuler": 2.0,
@@ -97,6 +97,8 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     ``solver_type`` is ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.
     Raises ``ValueError`` for any other solver, or a model with constraints or a singular mass matrix.
     """
+    require_kind("mbs", mbs, exu.MainSystem)
+    require_kind("solver_type", solver_type, exu.DynamicSolverType)
     if solver_type.name not in INTERVALS:
         raise ValueError(
             f"solver_type = {solver_type.name}: it must be explicit with a fixed step: {', '.join(INTERVALS)}"

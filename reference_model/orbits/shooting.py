@@ -239,7 +239,14 @@ class Orbit:
 
 
 class NoOrbitError(RuntimeError):
-    """Shooting found no periodic orbit near its guess."""
+    """Shooting found no periodic orbit near its guess.
+
+    ``residual`` is the smallest relative miss, infinite if the unknowns left the neighbourhood of the guess.
+    """
+
+    def __init__(self, message: str, residual: float = math.inf) -> None:
+        super().__init__(message)
+        self.residual = residual
 
 
 def shoot(
@@ -254,11 +261,12 @@ def shoot(
     units = problem.size(unknowns)[sought]
     step: FloatArray = np.zeros(len(sought))
     slopes: FloatArray | None = None
-    last = math.inf
+    last, left = math.inf, False
     for _ in range(MOST_ITERATIONS):
         near = abs(unknowns[PERIOD] / period - 1.0) < FARTHEST_PERIOD
         near = near and np.max(np.abs(unknowns[:PERIOD]) / scale) > COLLAPSED
-        if not (near and unknowns[LOAD] > 0.0 and np.all(np.isfinite(unknowns))):
+        left = not (near and unknowns[LOAD] > 0.0 and np.all(np.isfinite(unknowns)))
+        if left:
             break
         miss = problem.miss(unknowns)
         size = float(np.max(np.abs(miss) / scale))
@@ -282,7 +290,8 @@ def shoot(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
             f"{problem.system.disc_speed:g} rad/s: shooting stopped at a relative residual of {smallest:.1e}; "
             "start from the orbit of a nearby load; if it does not cross "
-            f"y = {unknowns[Y]:g} m, from one that starts elsewhere"
+            f"y = {unknowns[Y]:g} m, from one that starts elsewhere",
+            math.inf if left else smallest,
         )
     period, load, turn = (float(value) for value in best[PERIOD:])
     system, state = replace(problem.system, friction_force=load), problem.start(best)

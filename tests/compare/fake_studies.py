@@ -70,7 +70,7 @@ def claim(sentence, engine, predicted, measured, numerical, **more):
         "unit": "m",
     } | more
     resolution = values.pop("resolution", 1e-6)
-    budget = {name: values.pop(name) for name in ("model", "negligible") if name in values}
+    budget = {name: values.pop(name) for name in ("model", "negligible", "doubt") if name in values}
     return Claim(
         sentence,
         engine=engine,

@@ -299,6 +299,13 @@ COUPLED_CLUTCHES = Tested(
     },
 )
 
+EXACT_STICK = Tested(
+    STUDY["exact-stick"],
+    sound=("exudyn",),
+    gross={"friction 20 % too small": Patched(wrong.friction_off(0.8))},
+    small={"friction 0.1 % too small": Patched(wrong.friction_off(0.999))},
+)
+
 # ---------------------------------------------------------------- engines
 
 TRAJECTORIES = Tested(

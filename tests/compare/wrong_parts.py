@@ -30,8 +30,11 @@ from compare.studies.toolkit.drivetrain_bench import (
     natural_frequency,
     passenger_car,
 )
+from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.solver import linear_matrices
+from exudyn_models.solver.stick.complementarity import SharedLoad, largest_share
+from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring
 
@@ -235,6 +238,61 @@ def heat_counted_wrong(factor):
     return replaced(
         RingFriction, "power", lambda power: lambda friction, mbs, t: factor * power(friction, mbs, t)
     )
+
+
+# ---------------------------------------------------------------- exact stick
+
+
+def friction_off(factor):
+    """Multiply the friction coefficient of every contact by ``factor``."""
+
+    def wrong(add):
+        def added(*arguments, friction_coefficient, **options):
+            return add(*arguments, friction_coefficient=factor * friction_coefficient, **options)
+
+        return added
+
+    return replaced(exudyn_models, "add_ring_friction", wrong)
+
+
+def static_friction_off(factor):
+    """Multiply the static friction by ``factor``, so contacts release early if it is below 1."""
+
+    def put(patch):
+        limits, holding = AxialStick.limits, PlanarStick.holding_force
+        patch.setattr(AxialStick, "limits", lambda *of: tuple(factor * limit for limit in limits(*of)))
+        patch.setattr(PlanarStick, "holding_force", lambda *of: factor * holding(*of))
+
+    return put
+
+
+def unshared_load(patch):
+    """Give the whole load to the contacts that are constraints, as if the others did not hold."""
+
+    def distribution(shared, held, limits):
+        forces = np.append(held, np.zeros(len(limits) - len(held)))
+        return forces, largest_share(forces, limits)
+
+    patch.setattr(SharedLoad, "distribution", distribution)
+
+
+def sensed_heat_off(factor):
+    """Multiply the heat of the sensors by ``factor``."""
+
+    def wrong(new_power):
+        def scaled(friction):
+            power = new_power(friction)
+            friction._contact.power = lambda t: factor * power(t)
+            return friction._contact.power
+
+        return scaled
+
+    return replaced(RingFriction, "_new_power", wrong)
+
+
+def friction_drives(patch):
+    """Reverse the moment of sliding contacts on one axis."""
+    replaced(AxialStick, "moment", lambda moment: lambda *of: -moment(*of))(patch)
 
 
 # ---------------------------------------------------------------- Exudyn's solvers

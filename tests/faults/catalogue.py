@@ -11,7 +11,6 @@ from compare.engines import EVERY_KIND, Engine, reference
 from faults.around_reference import (
     from_rest,
     half_a_pitch_on,
-    in_single_precision,
     output_late,
     phases_late,
     three_terms,
@@ -93,7 +92,6 @@ NUMERICS = (
     made("no-coriolis", coriolis=0.0),
     made("energy-creeps-in", energy_gain=1e-6),
     made("step-10-times-too-large", order=4, step=0.1),
-    spoilt("single-precision", in_single_precision),
     around("output-late", output_late),
     around("phases-late", phases_late),
     spoilt("angle-wrapped", with_angle_wrapped),

@@ -8,6 +8,8 @@ from compare.studies.engines.trajectories import STUDY
 from compare.studies.engines.trajectories.study import NAMES
 from compare.studies.engines.trajectories.theory import ONE_OF_EACH_KIND
 from faults import FAULTS
+from faults.around_reference import in_single_precision
+from faults.catalogue import spoilt
 from reference_model.trajectory import SimulationError
 
 OF_ENGINES = [one for one in STUDY.declared if one.of_engine]
@@ -48,6 +50,11 @@ def caught_twice(engine):
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
 def test_two_kinds_of_claims_catch_every_fault(fault):
     assert caught_twice(fault)
+
+
+def test_single_precision_is_a_limit_and_no_fault():
+    for sentences, _ in caught(spoilt("single-precision", in_single_precision)):
+        assert not sentences
 
 
 def test_engine_that_fails_is_caught_by_all_kinds_of_claims():

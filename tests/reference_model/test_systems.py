@@ -140,7 +140,7 @@ def test_invalid_parameter_is_refused_with_its_unit_and_range(parameter):
 
 @pytest.mark.parametrize("system", [None, "pin", PinOnDisc])
 def test_argument_that_is_not_a_system_is_refused(system):
-    message = f"system = {system!r}: it must be a PinOnDisc or a DiscOnDisc"
+    message = f"system = {shown(system)}: it must be a PinOnDisc or a DiscOnDisc"
     assert refusal(simulate, system, [0.0] * 4, [0.0, 1.0]) == message
     for function in (self_centred_equilibria, whirls, whirl_orbit):
         assert refusal(function, system) == message

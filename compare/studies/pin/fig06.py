@@ -150,9 +150,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    fold = last_whirl(
-        with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.precision
-    )
+    fold = last_whirl(with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.noise)
 
     def least_load(tolerance: float) -> float:
         # The load is stationary there, so it changes with the tolerance like its smallest value.

@@ -49,7 +49,7 @@ def whirl_of(
     engine: Engine, system: System, tolerance: float, guess: Orbit | None = None, **more: Any
 ) -> Orbit:
     """Return a whirl by shooting with ``engine``; ``more`` are arguments of ``whirl_orbit``."""
-    own: dict[str, Any] = {"simulate": engine.simulate, "precision": engine.precision, "samples": SAMPLES}
+    own: dict[str, Any] = {"simulate": engine.simulate, "precision": engine.noise, "samples": SAMPLES}
     return whirl_orbit(system, tolerance=tolerance, guess=guess, **(own | more))
 
 

@@ -22,14 +22,18 @@ class Rotors:
         self.container = exu.SystemContainer()  # must live as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.sensors = [], []
-        of_speed = exu.OutputVariableType.Coordinates_t
-        angles = [0.0] * (len(inertias) - 1) + [last_angle]
+        self.changes: list[Any] = []  # modes of contacts that stick exactly, in the last run
+        angles = [last_angle if i == len(inertias) - 1 else 0.0 for i in range(len(inertias))]
         for inertia, speed, angle in zip(inertias, speeds, angles, strict=True):
             node = self.mbs.AddNode(self.items.Node1D(initialCoordinates=[angle], initialVelocities=[speed]))
             self.mbs.AddObject(self.items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
-            sensor = self.items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
-            self.sensors.append(self.mbs.AddSensor(sensor))
+            self.sensors.append(self.sensor(node, exu.OutputVariableType.Coordinates_t))
             self.nodes.append(node)
+
+    def sensor(self, node: Any, variable: Any) -> Any:
+        """Return a new sensor of a node, which stores its values."""
+        sensor = self.items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=variable)
+        return self.mbs.AddSensor(sensor)
 
     def marker(self, node: Any) -> Any:
         """Return a new marker on a node's angle."""
@@ -44,11 +48,12 @@ class Rotors:
         solver: str = "DOPRI5",
         tolerance: float = 1e-8,
         breaks: Sequence[float] = (),
+        newton: float | None = None,
     ) -> FloatArray:
         """Continue the motion; return times (s) and the sensor values after each step, one column each.
 
         The times contain the ``breaks``. All ``steps`` have equal size; DOPRI5 subdivides them for a local error of
-        ``tolerance``.
+        ``tolerance``. ``newton`` is the tolerance of implicit solvers, by default Exudyn's.
         """
         import exudyn as exu
 
@@ -62,8 +67,10 @@ class Rotors:
         options.startTime, options.endTime, options.numberOfSteps, options.verboseMode = begin, end, steps, 0
         options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
         options.generalizedAlpha.spectralRadius = NUMERICAL_DAMPING
+        if newton is not None:
+            options.newton.absoluteTolerance = options.newton.relativeTolerance = newton
         kind = getattr(exu.DynamicSolverType, solver)
         with quiet():
-            solve_dynamic(self.mbs, settings, kind, updateInitialValues=True, breaks=breaks)
+            self.changes = solve_dynamic(self.mbs, settings, kind, updateInitialValues=True, breaks=breaks)
         stored = [self.mbs.GetSensorStoredData(sensor) for sensor in self.sensors]
         return np.column_stack((stored[0][:, 0], *(values[:, 1:] for values in stored)))

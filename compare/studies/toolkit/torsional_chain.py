@@ -1,4 +1,4 @@
-"""Exact motion of rotors in a row, coupled by clutches with Coulomb friction.
+"""Exact motion of rotors that clutches with Coulomb friction couple, in a row or in any other way.
 
 Torques and capacities are piecewise harmonic, so the motion between events has a closed form. After the end of a
 slip, or a torque beyond a clutch's capacity, a search over all combinations of modes finds the consistent one.
@@ -56,15 +56,18 @@ Pieces = Sequence[tuple[float, Harmonic]]
 
 @dataclass(frozen=True)
 class Chain:
-    """Rotors in a row with inertias (kg m²) and external torques, and the clutches between them.
+    """Rotors with external torques, and the clutches between them.
 
-    A slipping clutch transmits its capacity, and a stuck one up to ``static_ratio`` times as much; 0 opens it.
+    A slipping clutch transmits its capacity, and a stuck one up to ``static_ratio`` times as much; 0 opens it. The
+    ``inertias`` (kg m²) are numbers, or the mass matrix of coordinates that gears couple. A row of ``slips`` maps the
+    speeds to the slip of one clutch; by default the clutches connect neighbours. The rows must be independent.
     """
 
-    inertias: Sequence[float]
+    inertias: Sequence[float] | FloatArray
     torques: Sequence[Pieces]
     capacities: Sequence[Pieces]
     static_ratio: float = 1.0
+    slips: FloatArray | None = None
 
     @cached_property
     def breaks(self) -> list[float]:
@@ -72,8 +75,14 @@ class Chain:
         return sorted({begin for pieces in (*self.torques, *self.capacities) for begin, _ in pieces})
 
     @cached_property
-    def _differences(self) -> FloatArray:
-        return np.diff(np.eye(len(self.inertias)), axis=0)
+    def slip_rows(self) -> FloatArray:
+        """Return the matrix that maps speeds to slips."""
+        return np.diff(np.eye(len(self.inertias)), axis=0) if self.slips is None else self.slips
+
+    @cached_property
+    def _mobility(self) -> FloatArray:
+        masses = np.asarray(self.inertias)
+        return np.diag(1.0 / masses) if masses.ndim == 1 else np.linalg.inv(masses)
 
     def in_force(self, t: float) -> list[Harmonic]:
         """Return the harmonics of torques and capacities in effect from ``t`` (s)."""
@@ -81,9 +90,9 @@ class Chain:
 
     def transmitted(self, modes: Sequence[int]) -> FloatArray:
         """Return the matrix that maps ``in_force`` to the torque of each clutch on the rotor behind it."""
-        n, d = len(self.inertias), self._differences
-        by_inertia = d / np.asarray(self.inertias)
-        equations, given = np.eye(n - 1), np.zeros((n - 1, 2 * n - 1))
+        n, m, d = len(self.inertias), len(self.capacities), self.slip_rows
+        by_inertia = d @ self._mobility
+        equations, given = np.eye(m), np.zeros((m, n + m))
         for i, mode in enumerate(modes):
             if mode == STUCK:
                 equations[i], given[i, :n] = by_inertia[i] @ d.T, -by_inertia[i]
@@ -92,22 +101,22 @@ class Chain:
         return np.asarray(np.linalg.solve(equations, given))
 
     def accelerations(self, modes: Sequence[int]) -> FloatArray:
-        """Return the matrix, shape (n, 2n - 1), that maps ``in_force`` to the angular accelerations."""
+        """Return the matrix, shape (n, n + m), that maps ``in_force`` to the angular accelerations."""
         n = len(self.inertias)
-        torques = np.hstack((np.eye(n), np.zeros((n, n - 1)))) + self._differences.T @ self.transmitted(modes)
-        return np.asarray(torques / np.asarray(self.inertias)[:, np.newaxis])
+        torques = np.eye(n, n + len(self.capacities))
+        return np.asarray(self._mobility @ (torques + self.slip_rows.T @ self.transmitted(modes)))
 
     def motion(self, speeds: Sequence[float], until: float) -> Motion:
         """Return the motion from ``breaks[0]`` to ``until`` (s), from angles of 0 and ``speeds`` (rad/s)."""
         begin, state = self.breaks[0], (np.zeros(len(speeds)), np.asarray(speeds, dtype=float))
-        signs, phases = np.sign(self._differences @ state[1]), []
+        signs, phases = np.sign(self.slip_rows @ state[1]), []
         while begin < until:
             phase = Phase(self, begin, self._modes(begin, signs), *state)
             end, happened = phase.first_event(min([until, *(time for time in self.breaks if time > begin)]))
             phases.append(phase)
             at_end = np.array([end])
             state = tuple(values[0] for values in phase.states(at_end))
-            signs = np.sign(self._differences @ state[1])
+            signs = np.sign(self.slip_rows @ state[1])
             for i, mode in enumerate(phase.modes):
                 if mode == STUCK:  # a released clutch slips against the torque that held it
                     signs[i] = -np.sign(phase.transmitted(at_end)[0, i]) if happened[i] else 0.0
@@ -126,7 +135,7 @@ class Chain:
         ]
         for modes in itertools.product(*choices):
             held = np.abs(self.transmitted(modes) @ values)
-            begins = self._differences @ self.accelerations(modes) @ values
+            begins = self.slip_rows @ self.accelerations(modes) @ values
             if all(
                 held[i] <= self.static_ratio * values[n + i] if mode == STUCK else mode * begins[i] > 0.0
                 for i, mode in enumerate(modes)
@@ -158,7 +167,7 @@ class Phase:
         return self.angles + gone * self.speeds + (matrix @ twice).T, self.speeds + (matrix @ once).T
 
     def transmitted(self, t: FloatArray) -> FloatArray:
-        """Return the clutch torques (N m) on the rotors behind them, shape (len(t), n - 1)."""
+        """Return the clutch torques (N m) on the rotors behind them, shape (len(t), m)."""
         values = np.array([f(t) for f in self._harmonics])
         return np.asarray((self.chain.transmitted(self.modes) @ values).T)
 
@@ -184,7 +193,7 @@ class Phase:
         return first, which
 
     def _slip(self, i: int, mode: int) -> Callable[[FloatArray], FloatArray]:
-        return lambda t: mode * np.diff(self.states(t)[1], axis=1)[:, i]
+        return lambda t: mode * self.states(t)[1] @ self.chain.slip_rows[i]
 
     def _hold(self, i: int) -> Callable[[FloatArray], FloatArray]:
         capacity = self._harmonics[len(self.chain.inertias) + i]
@@ -212,8 +221,8 @@ class Motion:
         return angles, speeds
 
     def modes(self, t: FloatArray) -> NDArray[np.int_]:
-        """Return the modes, shape (len(t), n - 1)."""
-        found = np.empty((len(t), len(self.chain.inertias) - 1), dtype=int)
+        """Return the modes, shape (len(t), m)."""
+        found = np.empty((len(t), len(self.chain.capacities)), dtype=int)
         for at, phase in self._each(t):
             found[at] = phase.modes
         return found

@@ -12,7 +12,7 @@ import numpy as np
 
 from exudyn_models.forces.jit import compiled
 from exudyn_models.forces.laws.calls import kept, kept_at, number_at
-from reference_model.systems import finite_number
+from reference_model.systems import finite_number, require_callable, shown
 
 Pressure = Literal["uniform", "wear"] | Callable[[float], float]
 """"uniform"; "wear", ∝ 1/r as in evenly worn linings; or a function of r in m, in any unit."""
@@ -35,8 +35,9 @@ def density_of(pressure: Pressure, inner: float, outer: float) -> int:
         return -int(kept((0.0,) * DEGREE + (1.0 / (outer - inner),)))
     if not callable(pressure):
         raise ValueError(
-            f"pressure = {pressure!r}: it must be 'uniform', 'wear' or a function of the radius in m"
+            f"pressure = {shown(pressure)}: it must be 'uniform', 'wear' or a function of the radius in m"
         )
+    require_callable("pressure", pressure, "radius")
     radii = np.linspace(inner, outer, 65)
     shares = np.array([_checked(pressure, float(radius)) for radius in radii]) * radii
     places = (radii - inner) / (outer - inner)

@@ -78,23 +78,26 @@ def rest_or_slip(
     """Return the directions of the slip that begins at contacts without slip, shape (k,), 0 at rest.
 
     ``static`` and ``sliding``, shape (k, 2), are the largest forces against slip forward and backward. Static
-    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. Slip
-    accelerations below ``noise`` count as zero.
+    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. Contacts
+    that can rest after all, because others slip, do so. Slip accelerations below ``noise`` count as zero.
     """
-    low, high = -static[:, 0], static[:, 1].copy()
-    directions = np.zeros(len(rates))
-    while True:
+
+    def directions(slips: NDArray[np.bool_]) -> FloatArray:
+        low, high = np.where(slips, sliding.T, static.T) * [[-1.0], [1.0]]
         forces, left = bounded_forces(to_rates, rates, low, high)
         least = np.maximum(SLIPS * np.maximum(np.diag(to_rates) * static.max(axis=1), np.abs(rates)), noise)
         edge = ACTIVE * (high - low)
         pressed = np.where(forces <= low + edge, left > least, (forces >= high - edge) & (left < -least))
-        begins = np.flatnonzero(pressed & (directions == 0.0))
-        if not len(begins):
-            return directions
-        directions[begins] = np.sign(left[begins])
-        for i in begins:
-            forward = directions[i] > 0.0
-            low[i] = high[i] = -sliding[i, 0] if forward else sliding[i, 1]
+        return np.where(pressed, np.sign(left), 0.0)
+
+    slips = np.zeros(len(rates), dtype=bool)
+    while (found := (directions(slips) != 0.0) & ~slips).any():
+        slips |= found
+    for i in np.flatnonzero(slips)[::-1] if slips.sum() > 1 and (static > sliding).any() else ():
+        others = slips & (np.arange(len(slips)) != i)
+        if not directions(others)[~others].any():
+            slips = others
+    return directions(slips)
 
 
 def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[int], FloatArray]:

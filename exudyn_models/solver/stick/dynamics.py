@@ -19,6 +19,9 @@ DIFFERENCE = 1e-2
 SINGULAR = 1e10
 """Largest element of the inverse of scaled equations whose constraints are independent."""
 
+LIGHT = 1e-7
+"""Largest mass of an Euler parameter, relative to its coupling with others, that may be a rounding error."""
+
 KEPT = 8
 """Number of inverses to keep; rotors need only one for each set of constraints."""
 
@@ -115,10 +118,8 @@ def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
     If constraints depend on each other, it is the pseudoinverse of the scaled equations, whose forces are smallest.
     """
     size, count = len(mass), len(gradients)
-    masses = np.diag(mass)
-    light = np.min(masses, where=masses > 0.0, initial=np.inf)
     scale = np.ones(size + count)
-    scale[:size] = 1.0 / np.sqrt(np.where(masses > 0.0, masses, light))
+    scale[:size] = np.sqrt(mobilities(mass))
     lengths = np.linalg.norm(gradients * scale[:size], axis=1)
     active = lengths > 0.0
     scale[size:][active] = 1.0 / lengths[active]
@@ -132,3 +133,10 @@ def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
     if not np.abs(inverse).max(initial=0.0) < SINGULAR:
         inverse = np.linalg.pinv(system, rcond=1.0 / SINGULAR, hermitian=True)
     return np.asarray(scale[:, None] * inverse * scale)
+
+
+def mobilities(mass: FloatArray) -> FloatArray:
+    """Return the inverse of each mass, shape (n,); the smallest mass takes the place of those that are zero."""
+    masses = np.diag(mass)
+    heavy = masses > LIGHT * np.abs(mass).max(axis=1, initial=0.0)
+    return np.asarray(1.0 / np.where(heavy, masses, np.min(masses, where=heavy, initial=np.inf)))

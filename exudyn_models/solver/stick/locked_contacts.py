@@ -9,13 +9,17 @@ import scipy.linalg
 from scipy.optimize import minimize
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
-from exudyn_models.solver.stick.dynamics import Dynamics
+from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
+from exudyn_models.solver.stick.slip_motion import SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import (
+    AHEAD,
+    STILL,
     PlanarContact,
     StickingContact,
     joints_of,
 )
 from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
 
 
 class LockedContacts:
@@ -37,6 +41,25 @@ class LockedContacts:
     def _held_rows(self, locked: Sequence[StickingContact]) -> FloatArray:
         return np.vstack([self._joints, *(contact.rows(self._mbs) for contact in locked)])
 
+    def is_held_from_the_plane(self, contact: StickingContact) -> bool:
+        """Return whether contacts at rest in the plane hold a contact on an axis that the others leave free."""
+        on_axes = [
+            one
+            for one in self._contacts
+            if one.mode == Mode.LOCKED and one is not contact and one not in self._planar
+        ]
+        row, held = contact.rows(self._mbs), self._held_rows(on_axes)
+        in_plane = [one.slip_rows(self._mbs) for one in self._planar if one.planar.rests]
+        return bool(in_plane) and spanned(row, np.vstack([held, *in_plane])) and not spanned(row, held)
+
+    def _check_axes(self, t: float, on_axes: Sequence[StickingContact], forces: FloatArray) -> None:
+        """Raise ``SimulationError`` if generalised ``forces``, shape (n,), from the plane exceed a capacity."""
+        reactions = np.linalg.lstsq(self._held_rows(on_axes).T, -forces, rcond=None)[0]
+        for contact, more in zip(on_axes, reactions[len(self._joints) :].tolist(), strict=True):
+            moment = contact.stick.held_moment(self._mbs) + more
+            if contact.stick.unused(contact.capacities(t), moment) < 0.0:
+                raise undecided(t)
+
     def share_directions(self) -> None:
         """Let each contact slip only in directions that joints and contacts locked before it allow."""
         if not self._planar:
@@ -51,6 +74,13 @@ class LockedContacts:
             if contact.mode == Mode.LOCKED:
                 locked.append(contact)
 
+    def passes(self, contact: PlanarContact, motion: SlipMotion) -> bool:
+        """Return whether joints and prescribed motions accelerate a slip, so it may only pass through zero."""
+        locked = [one for one in self._contacts if one.mode == Mode.LOCKED and one not in self._planar]
+        slips = contact.slip_rows(self._mbs) @ _null_space(self._held_rows(locked))
+        imposed = motion.rate - slips @ np.linalg.lstsq(slips, motion.rate, rcond=None)[0]
+        return AHEAD * contact.planar.potential_of(imposed) > STILL
+
     def set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
         """Give a contact the ``slip``, as far as joints allow, by a change of the initial velocities."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
@@ -63,7 +93,7 @@ class LockedContacts:
     def _velocities_of(self, contact: PlanarContact, slip: FloatArray) -> FloatArray:
         """Return velocities that give only this contact a slip; heavy bodies move least."""
         others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
-        held, weights = self._held_rows(others), self._mobilities()
+        held, weights = self._held_rows(others), np.sqrt(mobilities(self._mass))
         resisted = slice(3 if contact.planar.mean_radius > 0.0 else 2)  # a pin may spin
         rows = np.vstack([held, contact.slip_rows(self._mbs)[resisted]]) * weights
         wanted = np.concatenate([np.zeros(len(held)), slip[resisted]])
@@ -111,12 +141,17 @@ class LockedContacts:
         moved = undetermined @ least_maximum(shares, undetermined.shape[1])
         for contact, change in zip(resting, moved.reshape(-1, 3), strict=True):
             contact.planar.taken_over = contact.planar.taken_over + change
+        taken = slips.T @ np.concatenate([contact.planar.taken_over for contact in resting])
+        self._check_axes(t, [contact for contact in others if contact not in self._planar], taken)
         return True
 
-    def _mobilities(self) -> FloatArray:
-        masses = np.diag(self._mass)
-        light = np.min(masses, where=masses > 0.0, initial=np.inf)
-        return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))
+
+def undecided(t: float) -> SimulationError:
+    """Return an error at the time t (s) about contacts on an axis and in the plane that share a load."""
+    return SimulationError(
+        f"contacts on an axis and in the plane share a load at t = {t:.9g} s that releases one on the axis: exact "
+        "stick cannot distribute this load; give one of these contacts a regularisation"
+    )
 
 
 def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], size: int) -> FloatArray:

@@ -13,10 +13,10 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.locked_contacts import LockedContacts
+from exudyn_models.solver.stick.locked_contacts import LockedContacts, undecided
 from exudyn_models.solver.stick.resting_axes import RestingAxes
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
-from exudyn_models.solver.stick.slip_motion import RESOLVED
+from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import STILL, PlanarContact, StickingContact
 from reference_model.trajectory import SimulationError
 
@@ -55,6 +55,10 @@ class ModeChoice:
         if self._planar:  # slip on one axis has a constant direction
             self._dynamics.evaluate(t)
             self._locked = LockedContacts(self._mbs, self._dynamics, self._contacts)
+
+    def passes(self, contact: PlanarContact, motion: SlipMotion) -> bool:
+        """Return whether a slip may only pass through zero, after ``survey``."""
+        return self._locked.passes(contact, motion)
 
     def begin(self) -> None:
         """Remove the slip of contacts that start locked."""
@@ -122,7 +126,10 @@ class ModeChoice:
             for contact, is_held in zip(self._planar, held, strict=True):
                 contact.hold(self._mbs, is_held)
                 contact.planar.taken_over = np.zeros(3)  # other contacts may rest now
+            shared = self._held_from_the_plane()
             self._axes.settle(t)
+            if any(contact.stick.slides for contact in shared):
+                raise undecided(t)
             chosen = self._contradiction(t)
             if chosen is None:
                 self._slides.survey()
@@ -132,6 +139,16 @@ class ModeChoice:
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s"
         )
+
+    def _held_from_the_plane(self) -> list[StickingContact]:
+        """Return the contacts at rest on axes that contacts in the plane hold as well."""
+        return [
+            contact
+            for contact in self._contacts
+            if contact.mode == Mode.LOCKED
+            and not isinstance(contact, PlanarContact)
+            and self._locked.is_held_from_the_plane(contact)
+        ]
 
     def enter(self, t: float, contact: PlanarContact, mode: Mode) -> None:
         """Switch the mode of a contact in the plane at the time t (s), and set its slip."""

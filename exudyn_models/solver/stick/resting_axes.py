@@ -17,7 +17,7 @@ from exudyn_models.solver.stick.complementarity import (
     independent_rows,
     rest_or_slip,
 )
-from exudyn_models.solver.stick.dynamics import Dynamics
+from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
 from exudyn_models.solver.stick.sticking_contacts import STILL, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -55,8 +55,7 @@ class _Slips:
         self._bias = np.concatenate([contact.bias(mbs) for contact in contacts])
         self._to_velocities = dynamics.inverse[:size, :size] @ self.rows.T
         self.to_rates = self.rows @ self._to_velocities
-        masses = np.diag(dynamics.mass)
-        lengths = self.rows**2 @ np.where(masses > 0.0, 1.0 / np.where(masses > 0.0, masses, 1.0), 0.0)
+        lengths = self.rows**2 @ mobilities(dynamics.mass)
         self.prescribed = np.diag(self.to_rates) <= DEPENDENT * lengths
         self.to_rates[self.prescribed] = self.to_rates[:, self.prescribed] = 0.0
 
@@ -132,6 +131,7 @@ class RestingAxes:
         self._step, self._data = step, mbs.systemData
         self._places = [int(self._data.GetObjectLTGAE(contact.stick.locks[0])[0]) for contact in contacts]
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
+        self._slipped = set[StickingContact]()
         self._locked: list[int] = []
         self._alone: list[int] = []
         self._groups: list[_Group] = []
@@ -143,6 +143,7 @@ class RestingAxes:
             if self._ended.intersection(group.contacts):
                 self._ended.update(group.contacts)
         self._overloaded = {contact for contact in self._ended if contact.mode == Mode.LOCKED}
+        self._slipped = set()
 
     def accelerate(self, t: float) -> None:
         """Store the accelerations and constraint forces of the present modes at the initial values."""
@@ -155,7 +156,10 @@ class RestingAxes:
         return self._dynamics.solution(self._dynamics.forces())
 
     def settle(self, t: float) -> None:
-        """Choose the modes, and store accelerations and constraint forces."""
+        """Choose the modes, and store accelerations and constraint forces.
+
+        Until ``end``, contacts that have begun to slip have sliding friction, even if others change their modes.
+        """
         if not self._contacts:
             self.accelerate(t)
             return
@@ -174,6 +178,11 @@ class RestingAxes:
         ]
         before = self._locked
         self._iterate(t, lambda: self._choose(t, slips, modes, before))
+        self._slipped.update(
+            contact
+            for contact, mode in zip(self._contacts, modes, strict=True)
+            if mode == Mode.LOCKED and contact.stick.slides
+        )
         for i in self._locked:
             self._contacts[i].enter(self._mbs, Mode.LOCKED)
         slips.stop(self._locked)
@@ -212,13 +221,15 @@ class RestingAxes:
         ratios = np.array([[contacts[i].stick.static_ratio] for i in still]).reshape(-1, 1)
         overloads = np.array([contacts[i] in self._overloaded for i in still])
         shrunk = (SHRUNK * overloads * static.max(axis=1, initial=0.0))[:, None]
+        sliding = np.minimum(static - shrunk, static / ratios)
+        slipped = np.array([contacts[i] in self._slipped for i in still], dtype=bool)[:, None]
         accelerations, _ = self._present()
         directions = rest_or_slip(
             slips.to_rates[np.ix_(still, still)],
             slips.rates(accelerations)[still],
             slips.noise(accelerations)[still],
-            static - shrunk,
-            static / ratios,
+            np.where(slipped, sliding, static - shrunk),
+            sliding,
         )
         for i, direction in zip(still, directions, strict=True):
             if direction != 0.0:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.solver.stick.slip_motion import SlipMotion
+from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact
 from reference_model.systems import FloatArray
 
@@ -20,11 +20,8 @@ ON_GRID = 1e-9
 APPROACH = 0.9
 """Largest share of the slip that its acceleration could remove in a step."""
 
-TURN = 0.05
-"""Largest change of the direction of friction in a shortened step."""
-
-FULL_TURN = 0.3
-"""Largest change of this direction in a step of full length."""
+TURN = 0.03
+"""Largest change of the direction of friction in a step."""
 
 
 class SlidingSteps:
@@ -53,11 +50,15 @@ class SlidingSteps:
         """Return whether the shortest step might end without slip."""
         return motion.rests_within(contact.rest_share * self._step / APPROACH)
 
+    def beyond(self, motion: SlipMotion) -> float:
+        """Return the time (s) after a rest until the slip is large enough to have a direction."""
+        shortest = PlanarContact.rest_share * self._step
+        return max(shortest, 2.0 * RESOLVED * motion.largest_term / motion.rate_potential)
+
     def resolves(self, step: float) -> bool:
         """Return whether a ``step`` (s) was short enough, and choose the next one."""
         if not self._contacts:
             return True
-        shortened = step < (1.0 - ON_GRID) * self._step
         before, by_slip = self._directions, self._by_slip
         self.survey()
         turned = max(
@@ -68,7 +69,7 @@ class SlidingSteps:
             ),
             default=0.0,
         )
-        if turned > (TURN if shortened else FULL_TURN):
+        if turned > TURN:
             self._directions, self._by_slip, self.rests = before, by_slip, False
             self._growing = step / 2.0
             return False

@@ -31,8 +31,8 @@ SOON = 1e-6
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""
 
-SHORT = exu.DynamicSolverType.TrapezoidalIndex2
-"""Solver of shorter steps; GeneralizedAlpha would divide errors of positions by their square."""
+SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
+"""Solver of all steps; constraint forces of GeneralizedAlpha contain errors of positions over the squared step."""
 
 FORCES = 1e-12
 """Residual of Newton's method for contacts in the plane, relative to its first value or to the friction.
@@ -51,18 +51,17 @@ _Point = tuple[float, FloatArray]
 def run_switching(
     mbs: Any,
     settings: Any,
-    solver: Any,
     contacts: list[StickingContact],
     update_initial_values: bool,
     before: Sequence[Mode] = (),
 ) -> list[ModeChange]:
-    """Run an implicit ``solver``; return the changes of modes of the ``contacts``, which had the modes ``before``.
+    """Run TrapezoidalIndex2; return the changes of modes of the ``contacts``, which had the modes ``before``.
 
     Raises ``SimulationError`` if the modes change without end at one time.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     state = data.GetSystemState(initial)
-    run = _Run(mbs, copy.copy(settings), solver, contacts)
+    run = _Run(mbs, copy.copy(settings), contacts)
     try:
         run.run(before)
     finally:
@@ -72,8 +71,8 @@ def run_switching(
 
 
 class _Run:
-    def __init__(self, mbs: Any, settings: Any, solver: Any, contacts: list[StickingContact]) -> None:
-        self._mbs, self._settings, self._solver, self._contacts = mbs, settings, solver, contacts
+    def __init__(self, mbs: Any, settings: Any, contacts: list[StickingContact]) -> None:
+        self._mbs, self._settings, self._contacts = mbs, settings, contacts
         self._options = options = settings.timeIntegration
         self._start, self._end, self._steps = options.startTime, options.endTime, options.numberOfSteps
         self._step = (self._end - self._start) / self._steps
@@ -164,7 +163,6 @@ class _Run:
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
         self._sensors.switch(write)
         solution.file.write = write and self._writes_file
-        whole = end - self._reached > (1.0 - ON_GRID) * self._step
         if self._planar:
             small = (
                 any(contact.free_to_slide for contact in self._planar) and self._slides.longest < self._step
@@ -172,7 +170,7 @@ class _Run:
             options.newton.relativeTolerance = self._tolerances[not small]
         self._look = look
         with starting_rates(self._mbs, self._reached):
-            self._mbs.SolveDynamic(self._settings, self._solver if whole else SHORT, keep)
+            self._mbs.SolveDynamic(self._settings, SOLVER, keep)
         if write:
             solution.file.append = solution.sensors.append = True
 
@@ -278,23 +276,28 @@ class _Run:
         self._modes.end(self._reached, [self._contacts[i] for i in np.flatnonzero(ends)])
 
     def _stop(self) -> None:
-        """Step under constant friction until contacts in the plane rest, and lock them."""
+        """Step under constant friction until contacts in the plane rest, and lock them.
+
+        A slip that a prescribed motion reverses passes through zero, and is resolved again after the step.
+        """
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
-        resting = [
-            (contact, motion.remaining) for contact, motion in motions if self._slides.stops(contact, motion)
-        ]
-        time = min(remaining for _, remaining in resting)
+        stopping = [(contact, motion) for contact, motion in motions if self._slides.stops(contact, motion)]
+        self._modes.survey(self._reached)
+        passing = {contact: motion for contact, motion in stopping if self._modes.passes(contact, motion)}
+        time = min(motion.remaining for _, motion in stopping)
+        time += max(map(self._slides.beyond, passing.values()), default=0.0)
         if self._reached + time > self._reached:
-            for contact, _ in resting:
+            for contact, _ in stopping:
                 contact.planar.frozen = True
             try:
                 self._step_to(self._reached + time)
             finally:
-                for contact, _ in resting:
+                for contact, _ in stopping:
                     contact.planar.frozen = False
         self._modes.survey(self._reached)
-        for contact, _ in resting:
-            self._modes.enter(self._reached, contact, Mode.LOCKED)
+        for contact, _ in stopping:
+            if contact not in passing:
+                self._modes.enter(self._reached, contact, Mode.LOCKED)
 
     def _step_to(self, t: float) -> None:
         self._part(t, 1, lambda time: True, write=False, keep=True)

@@ -1,8 +1,11 @@
+import json
+
 import numpy as np
 import pytest
 from fake_studies import claim
 
-from compare.claims.claim import Grade, Verdict
+from compare.claims.as_json import claim_as_json, claim_from_json
+from compare.claims.claim import DOUBT, Grade, Verdict
 from compare.report.numbers import account, decision, in_short, worst
 
 
@@ -30,8 +33,23 @@ from compare.report.numbers import account, decision, in_short, worst
     ],
 )
 def test_verdict_of_a_number(difference, numerical, model, resolution, verdict):
-    made = claim("c", "good", 0.0, difference, numerical, model=model, resolution=resolution)
+    made = claim("c", "good", 0.0, difference, numerical, model=model, resolution=resolution, doubt=DOUBT)
     assert made.verdict is verdict
+
+
+def test_an_error_that_many_runs_show_is_not_doubted():
+    made = claim("c", "good", 0.0, 0.6, 0.5)
+    assert made.verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize(
+    ("difference", "numerical", "more"),
+    [(1e-8, 1e-9, {"negligible": 0.0}), (1e-8, 1e-9, {}), (0.6, 0.5, {"doubt": DOUBT}), (0.6, 0.5, {})],
+)
+def test_a_stored_claim_has_the_same_verdict(difference, numerical, more):
+    made = claim("c", "good", 0.0, difference, numerical, **more)
+    stored = json.loads(json.dumps(claim_as_json(made)))
+    assert claim_from_json(stored).verdict is made.verdict
 
 
 @pytest.mark.parametrize(

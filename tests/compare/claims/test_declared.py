@@ -234,3 +234,26 @@ def test_a_failed_search_for_an_orbit_is_reported_in_terms_of_the_engine():
     study.claim("It whirls", resolution=1.0)(whirls)
     with pytest.raises(RuntimeError, match=r"^exact has no periodic motion near .* residual of 1.1e\+01\)$"):
         study.measure(ENGINE)
+
+
+def test_an_orbit_that_returns_only_roughly_is_not_measured_and_no_failure():
+    def whirls(engine):
+        raise NoOrbitError("no whirl", 2.7e-7)
+
+    study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
+    study.claim("It whirls", resolution=1.0)(whirls)
+    found = study.measure(ENGINE)
+    assert found.gaps["It whirls"].startswith(
+        "exact is too inaccurate for shooting, because it misses its start by 2.7e-07"
+    )
+
+
+@pytest.mark.parametrize(
+    ("more", "verdict"),
+    [({}, Verdict.DIFFERS), ({"step": 1e-3}, Verdict.AGREES), ({"precision": 1e-6}, Verdict.AGREES)],
+)
+def test_differences_within_the_resolution_matter_only_for_engines_that_follow_the_tolerance(more, verdict):
+    study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
+    study.claim("It rests", resolution=1e-3)(lambda engine: Measured(predicted=1.0, value=1.0001, error=1e-5))
+    (claim,) = study.measure(replace(ENGINE, **more)).claims
+    assert claim.verdict is verdict

@@ -76,7 +76,7 @@ def test_a_users_engine_is_named_module_function_and_declares_its_kinds(code, ki
     [
         ("1 / 0", " cannot be imported: ZeroDivisionError: division by zero"),
         ("simulate.kinds = ('rings',)", ", attribute kinds = … did you mean 'ring'"),
-        ("simulate.kinds = 7", ", attribute kinds = …not iterable"),
+        ("simulate.kinds = 7", ", attribute kinds = …7: it must be a tuple or a list"),
         ("simulate.sticks = 'no'", ", attribute …sticks = 'no': it must be True or False"),
         ("simulate.step = 1e-300", ", attribute …step = 1e-300 s: it must be at least 1e-09 s"),
     ],

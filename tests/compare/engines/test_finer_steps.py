@@ -3,6 +3,7 @@
 import functools
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -102,3 +103,4 @@ def test_only_a_fixed_step_is_shortened_and_only_within_the_time_limit(monkeypat
     assert asked(Engine("free", euler), 0.0) == asked(None, 0.0) == [None]
     assert asked(fixed, 0.9 * LONGEST / SHORTER) == pytest.approx([STEP / 4.0**i for i in range(4)])
     assert asked(fixed, 1.1 * LONGEST / SHORTER) == [STEP]
+    assert asked(replace(fixed, precision=1e-6), 0.0) == [STEP]  # shorter steps only add rounding errors

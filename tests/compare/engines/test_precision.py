@@ -7,7 +7,7 @@ import reference_model
 from compare.claims.error_estimates import COARSENING, refined
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine, reference
-from compare.engines.precision import blurred_start
+from compare.engines.precision import SINGLE, are_single, blurred_start
 from reference_model import Trajectory, whirl_orbit
 
 SLIDES = ((0.9, 0.0, 0.0, 0.9), (0.0, 5.0, 10.0, 15.0))
@@ -32,12 +32,36 @@ def energy(engine, tolerance):
 
 def test_a_declared_precision_enters_the_error_estimate():
     exact = energy(reference, 1e-13)
-    unsaid = refined(lambda tolerance: energy(engine(0.0), tolerance))
+    rounded = [
+        0.5 * np.sum(in_single_precision(FIG5, *SLIDES, tolerance=tolerance).states[1:] ** 2, axis=1)
+        for tolerance in (1e-9, 1e-9 / COARSENING)
+    ]
     said = refined(lambda tolerance: energy(engine(), tolerance))
-
-    assert np.any(np.abs(unsaid.value - exact) > unsaid.error)  # rounding is the same at both tolerances
+    assert np.array_equal(*rounded)  # rounding is the same at both tolerances
+    assert np.any(rounded[0] != exact)
     assert np.all(np.abs(said.value - exact) <= said.error)
     assert np.all(said.error < 1e-4)
+
+
+def test_single_precision_is_recognised_by_its_numbers():
+    exact = energy(reference, 1e-13)
+    undeclared = engine(0.0)
+    found = refined(lambda tolerance: energy(undeclared, tolerance))
+    assert undeclared.noise == SINGLE
+    assert np.all(np.abs(found.value - exact) <= found.error)
+
+
+@pytest.mark.parametrize(
+    "states",
+    [
+        np.zeros((5, 4)),
+        np.arange(20.0).reshape(5, 4) / 8.0,  # short numbers fit into any precision
+        np.sqrt(np.arange(20.0)).reshape(5, 4),
+        np.repeat([[0.1, 0.2, 0.3, 0.4]], 5, axis=0).astype(np.float32).astype(float),  # nothing moves
+    ],
+)
+def test_other_numbers_are_not_taken_for_single_precision(states):
+    assert not are_single(states)
 
 
 def test_the_estimate_covers_noise_of_either_sign():

@@ -227,3 +227,36 @@ def test_creep_of_a_coarse_engine_that_grows_up_to_release_is_not_called_stick(g
     block = replace(BLOCK, stiffness=1e-6)
     found = engine(slow, phases=False).simulate(block, (0.0, 0.0, 1.0, 0.0), TIMES, tolerance=1e-7)
     assert bool(found.stick_phases) == sticks
+
+
+def split_symmetrically(pin, start, times, *, step):
+    """Half of friction, springs and damper, and the other half of friction; complex numbers are vectors."""
+    z, velocity = complex(*start[:2]), complex(*start[2:])
+    states, now = [start], times[0]
+    for time in times[1:]:
+        steps = max(1, math.ceil((time - now) / step - 1e-9))
+        h, now = (time - now) / steps, time
+        for i in range(2 * steps):
+            if i % 2:
+                velocity -= h * (pin.stiffness * (z - pin.offset) + pin.damping * velocity) / pin.mass
+                z += h * velocity
+            disc = 1j * pin.disc_speed * z
+            slip, stopped = velocity - disc, 0.5 * h * pin.friction_force / pin.mass
+            velocity = disc + slip * max(0.0, 1.0 - stopped / max(abs(slip), 1e-300))
+        states.append((z.real, z.imag, velocity.real, velocity.imag))
+    return Trajectory(pin, np.array(times), np.array(states))
+
+
+def test_slip_that_friction_stops_within_a_step_is_stick():
+    """Above half of the limit, half of friction leaves some slip at the end of each step, in proportion to it."""
+    pin, start = replace(FIG5, friction_force=0.5, disc_speed=0.5, offset=0.5), (1.0, 0.0, 0.0, 0.5)
+    (expected, *_) = told(pin, start, [0.0, 2.0]).phases
+    split = Engine("mine", split_symmetrically, ("pin",), step=2e-3)
+    found = [
+        split.simulate(pin, start, [0.0, 2.0], tolerance=tolerance).phases[0]
+        for tolerance in (1e-9, 1.25e-10)
+    ]
+    assert [phase.kind for phase in found] == ["stick", "stick"]
+    release, finer = (phase.end for phase in found)
+    assert expected.end > 1.0
+    assert expected.end == pytest.approx(finer, abs=abs(release - finer))

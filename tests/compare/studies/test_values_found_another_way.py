@@ -7,6 +7,7 @@ integration of the plain equations with events, the return map of releases, or s
 
 import re
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,23 +18,31 @@ from scipy.optimize import brentq, root
 from studies_under_test import engine_named
 
 from compare.claims.error_estimates import TIGHTEST, TRUTH
-from compare.claims.linearised_flow import rotated
+from compare.claims.linearised_flow import matched, rotated
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.studies import STUDIES
 from compare.studies.disc.fig08 import study as fig08
 from compare.studies.disc.fig09 import growth_and_stick, steady_motions, theory
 from compare.studies.disc.fig11 import offsets
 from compare.studies.disc.fig11 import theory as fig11
+from compare.studies.disc.free_ring import theory as free_ring
+from compare.studies.drivetrain.frozen import theory as frozen
+from compare.studies.drivetrain.frozen import whirls
 from compare.studies.engines import clutch_scale, power_balance
 from compare.studies.engines.trajectories import theory as trajectories
 from compare.studies.pin import fig06, nonlinear_support
 from compare.studies.pin.fig05 import study as fig05
+from compare.studies.plane.pushes import forward
+from compare.studies.plane.pushes import theory as pushes
+from compare.studies.plane.pushes.reduction import reduced_pushes
 from compare.studies.toolkit import measuring
+from compare.studies.toolkit.drivetrain_bench import centred_car
 from compare.studies.toolkit.fig11 import RING, SIX, START
 from compare.studies.toolkit.pins import exact_whirl, extent, sizes_of
 from compare.studies.toolkit.steady_motion import equilibrium_of, steady_motion, with_load
 from reference_model import plain, simulate
 from reference_model.contact.contact_law import contact_of
+from reference_model.contact.elliptic import mean_directions
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.orbits.release_map import ReleaseMap, stick_slip_orbits
 from reference_model.systems import ANGLE, DiscOnDisc
@@ -229,6 +238,111 @@ def test_lasting_stick_phases_begin_with_the_events_of_the_plain_equations():
 def test_the_quadrature_closes_the_power_balance_of_an_exact_motion(name):
     run = power_balance._run(engine_named("reference"), power_balance.all_motions()[name], TRUTH)
     assert power_balance._relative_residual(power_balance.power_balance(run)) < 5e-12
+
+
+def rates_in_turning_axes(car, whirl, state):
+    """Return the rates of x, y, φ − ψ, θ̇, ψ̇, ẋ, ẏ, φ̇ by summing Coulomb friction over points of the facings."""
+    x, y, twist, engine, vehicle, vx, vy, spin = state
+    z, velocity = x + 1j * y, vx + 1j * vy
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    radii = 0.5 * (car.inner_radius + car.outer_radius + (car.outer_radius - car.inner_radius) * nodes)
+    points = radii[:, np.newaxis] * np.exp(2j * np.pi * np.arange(256) / 256)
+    slip = velocity - 1j * engine * z + 1j * (spin - engine) * points
+    pressed = (weights * radii / np.sum(weights * radii) / 256)[:, np.newaxis]
+    forces = -whirl.friction_force * pressed * slip / np.abs(slip)
+    force, distance = np.sum(forces), abs(z)
+    contact = car.stop_stiffness * max(0.0, distance - car.stop_gap) / distance
+    spring = car.radial_stiffness + car.hardening * distance**2 + contact
+    held = whirl.torque + car.torsional_stiffness * twist + car.torsional_damping * (spin - vehicle)
+    acceleration = (force - spring * z - car.radial_damping * velocity) / car.disc_mass
+    moving = velocity - 1j * whirl.frequency * z
+    turning = acceleration - 1j * whirl.frequency * velocity
+    on_engine = whirl.engine_torque - np.sum(np.conj(z + points) * forces).imag
+    on_disc = np.sum(np.conj(points) * forces).imag - held
+    return np.array(
+        [
+            moving.real,
+            moving.imag,
+            spin - vehicle,
+            on_engine / car.engine_inertia,
+            (held - whirl.torque) / car.vehicle_inertia,
+            turning.real,
+            turning.imag,
+            on_disc / car.disc_inertia,
+        ]
+    )
+
+
+def modulation_by_differences(car, whirl):
+    """Return the six eigenvalues of the plain equations, linearised by differences, at a whirl that they confirm."""
+    spin = whirl.engine_speed - whirl.slip
+    speed = whirl.frequency * whirl.radius
+    state = np.array([whirl.radius, 0.0, 0.0, whirl.engine_speed, spin, 0.0, speed, spin])
+    scale = np.array([whirl.radius] * 2 + [1e-3] + [whirl.slip] * 2 + [speed] * 2 + [whirl.slip])
+    assert np.abs(rates_in_turning_axes(car, whirl, state)) == pytest.approx(
+        0.0, abs=1e-8 * speed * whirl.frequency
+    )
+    steps = 1e-5 * np.diag(scale)
+    columns = [
+        (rates_in_turning_axes(car, whirl, state + step) - rates_in_turning_axes(car, whirl, state - step))
+        / 2.0
+        for step in steps
+    ]
+    values = np.linalg.eigvals(np.transpose(columns) / np.diag(steps))
+    return values[np.argsort(np.abs(values))[2:]]
+
+
+@pytest.mark.parametrize("i", range(len(frozen.WHIRLS)))
+def test_eigenvalues_of_a_whirl_of_the_clutch_by_differences_of_the_plain_equations(i):
+    car = centred_car()
+    whirl = frozen.whirls_of(car)[i]
+    speed, torque, surplus = frozen.WHIRLS[i]
+    assert whirl.engine_speed * 30.0 / np.pi == pytest.approx(speed)
+    assert whirl.friction_force * car.friction_radius == pytest.approx(torque * (1.0 + surplus))
+    expected = modulation_by_differences(car, whirl)
+    size = np.max(np.abs(expected))  # differences are exact to about 1e-10 of the largest rate
+    assert matched(frozen.modulation(car, whirl), expected) == pytest.approx(
+        expected, rel=0.0, abs=1e-8 * size
+    )
+
+
+@pytest.mark.parametrize("torque", frozen.BORDER_TORQUES)
+def test_the_border_of_modulation_by_differences_of_the_plain_equations(torque):
+    car = centred_car()
+
+    def growth(speed):
+        whirl = frozen.whirl_under_surplus(car, speed * np.pi / 30.0, torque, frozen.BORDER_SURPLUS)
+        return modulation_by_differences(car, whirl).real.max()
+
+    found, _ = whirls._border(car, partial(frozen.state_matrix_of, car), torque, frozen.BETWEEN)
+    assert found == pytest.approx(brentq(growth, *frozen.BETWEEN, xtol=1e-6), abs=1e-3)
+
+
+@pytest.mark.parametrize("throw", free_ring.RINGS)
+def test_the_power_of_a_sliding_and_spinning_ring_by_the_mean_slip_of_its_points(throw):
+    """The heat of a ring integrates its power, which the same closed form gives on both sides of the balance."""
+    run = free_ring.thrown(engine_named("reference"), throw, free_ring.TOLERANCE)
+    sliding, rim = free_ring.speeds_at(run, free_ring.uniform_times(engine_named("reference"), throw)[:-20])
+    points = np.exp(2j * np.pi * (np.arange(20000) + 0.5) / 20000)
+    for u, w in zip(sliding, rim, strict=True):
+        assert np.dot([u, w], mean_directions(u, w)) == pytest.approx(np.abs(u + w * points).mean(), rel=1e-7)
+
+
+def test_the_path_of_a_hand_that_pushes_a_known_motion():
+    """Both simulations of a push use this path: the hand in the first pose of the body, about its centre of mass."""
+    begin, end, hand = (30.0 - 20.0j, 0.4), (36.0 - 11.0j, 0.7), (33.0 + 1.0j, 40.0 + 9.0j)
+    halfway = np.exp(-0.55j)
+    shift = (end[0] - begin[0]) * halfway
+    first, last = (
+        (one - place) * np.exp(-1j * angle) for one, (place, angle) in zip(hand, (begin, end), strict=True)
+    )
+    columns = {"x": shift.real, "y": shift.imag, "turn": 0.3, "start_x": first.real, "start_y": first.imag}
+    push = replace(reduced_pushes()[0], **columns, end_x=last.real, end_y=last.imag)
+    about = begin[0] + pushes.CENTRE * np.exp(0.4j)
+    in_first_pose = [(one - about) * np.exp(-0.4j) * 1e-3 for one in hand]
+    assert list(forward.path_of(push)[:2]) == pytest.approx(in_first_pose)
+    moved = end[0] + pushes.CENTRE * np.exp(0.7j) - about
+    assert forward.measured_motion(push) == pytest.approx((moved * np.exp(-0.4j) * 1e-3, 0.3))
 
 
 def test_the_documentation_lists_claims_that_exist():

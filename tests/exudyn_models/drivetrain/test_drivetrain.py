@@ -140,3 +140,23 @@ def test_the_picture_shows_the_disc_where_it_is():
 
     assert facing(1e-3, 0.0) == pytest.approx(facing(-1e-3, 0.0), abs=1e-12)
     assert facing(1e-3, 20.0)[1] - facing(-1e-3, 20.0)[1] > 2.0
+
+
+@pytest.mark.parametrize("value", [float("nan"), True, "1_0", 1j, np.timedelta64(5, "ms")])
+@pytest.mark.parametrize(
+    "name", ["engine_speed", "gearbox_speed", "shaft_torque", "engine_torque", "vehicle_torque"]
+)
+def test_drivetrain_refuses_wrong_speeds_and_torques(name, value):
+    arguments = {"normal_load": 1.0, "regularisation": 1e-3, "engine_speed": 1.0, "gearbox_speed": 0.0}
+    with pytest.raises(ValueError, match=f"^{name}.* = .*: it must be"):
+        build_drivetrain(PASSENGER_CAR, **(arguments | {name: value}))
+
+
+@pytest.mark.parametrize("value", [float("inf"), 0.0, -1.0, True, None, "1"])
+@pytest.mark.parametrize("name", ["until", "sample_every", "largest_step", "tolerance"])
+def test_run_refuses_what_is_not_positive(name, value):
+    model = build_drivetrain(
+        PASSENGER_CAR, normal_load=1.0, regularisation=1e-3, engine_speed=1.0, gearbox_speed=0.0
+    )
+    with pytest.raises(ValueError, match=f"^{name} = .*: it must "):
+        model.run(**({"until": 1e-3, "sample_every": 1e-3} | {name: value}))

@@ -16,7 +16,8 @@ WRONG = [
     (simulate, FIG5, {"tolerance": 0.0}, "tolerance = 0"),
     (simulate, FIG5, {"regularisation": 0.0}, "regularisation = 0 m/s"),
     (simulate, FIG5, {"regularisation": np.inf}, "regularisation = inf"),
-    (simulate, FIG11, {"solver": "magic"}, "solver = 'magic': it must be 'explicit' or 'implicit'"),
+    (simulate, FIG11, {"solver": "magic"}, "solver = 'magic': it must be one of explicit, implicit"),
+    (simulate, FIG5, {"friction": 1}, "friction = 1: it must be a Friction"),
     (
         simulate_fixed_step,
         FIG5,

@@ -45,7 +45,8 @@ def test_body_that_slides_and_pivots_rests_where_it_does_in_the_reference(exact)
 def test_points_that_stick_exactly_pivot_and_rest_as_in_the_reference(exact):
     """One foot rests first, and the body pivots about it until the others rest.
 
-    The errors of position and last rest are of second order; the error of the first rest falls more slowly.
+    The error of the position is of second order; that of the first rest falls more slowly. The error of the last rest
+    changes its sign near 150 steps, so it has no order there.
     """
     times = [phase.start for phase in exact.phases[1:]]
     errors = []
@@ -56,5 +57,7 @@ def test_points_that_stick_exactly_pivot_and_rest_as_in_the_reference(exact):
         late = np.abs(np.unique([change.time for change in changes]) - times)
         errors.append([np.abs(found - exact.states[-1, :3]).max(), *late])
     assert np.max(errors[1]) < 1e-5  # m, rad or s
-    assert (np.array(errors[0]) > 2.5 * np.array(errors[1])).all()
-    assert (np.array(errors[0])[[0, -1]] > 3.0 * np.array(errors[1])[[0, -1]]).all()
+    (place, first, last), (finer_place, finer_first, finer_last) = errors
+    assert place > 3.5 * finer_place
+    assert first > 2.5 * finer_first
+    assert max(last, finer_last) < 2e-7

@@ -246,8 +246,15 @@ def test_axes_across_each_other_are_refused_where_a_contact_is_added():
 def test_an_invalid_rotation_is_refused(name):
     mbs = new_model()
     disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    for rotation in (2.0 * np.eye(3), -np.eye(3), np.eye(2), "x", np.full((3, 3), np.nan)):
-        with pytest.raises(ValueError, match=f"(?s)^{name} = .*: it must be a rotation matrix of shape"):
+    matrix = f"(?s)^{name} = .*: it must be a rotation matrix of shape"
+    for rotation, words in (
+        (2.0 * np.eye(3), matrix),
+        (-np.eye(3), matrix),
+        (np.eye(2), matrix),
+        ("x", f"^{name} = 'x': it must be a number"),
+        (np.full((3, 3), np.nan), f"(?s)^{name}.* = nan: it must be finite"),
+    ):
+        with pytest.raises(ValueError, match=words):
             add_ring_friction(mbs, None, disc, **RING, **{name: rotation})
 
 

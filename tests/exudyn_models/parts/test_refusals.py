@@ -44,10 +44,11 @@ WRONG = [
     (
         RING,
         {"contact_radius": None, "contact_points": FEET, "held": 3},
-        "held = 3: it must be None, .* 1 to 2",
+        "held = 3: it must be a whole number >= 1 and <= 2",
     ),
     (RING, {"regularisation": 0.0}, "regularisation = 0 m/s"),
-    (RING, {"held": 4}, "held = 4: it must be None, or the number of a point, 1 to 3"),
+    (RING, {"held": 4}, "held = 4: it must be a whole number >= 1 and <= 3"),
+    (RING, {"held": True}, "held = True: it must be a whole number >= 1 and <= 3"),
     (RING, {"held": 1, "contact_points": None}, "held = 1: it must be None without contact points"),
     (RING, {"static_ratio": 0.9}, "static_ratio = 0.9: static divided by sliding friction must be >= 1"),
     (RING, {"plates": 0}, "plates = 0: it must be a whole number >= 1"),
@@ -89,6 +90,7 @@ WRONG = [
     (SUPPORT, {"hardening": -2.0}, "hardening = -2 N/m³: it must be >= 0"),
     (SUPPORT, {"stop_gap": -0.1}, "stop_gap = -0.1 m: it must be >= 0"),
     (SUPPORT, {"stop_stiffness": math.inf}, "stop_stiffness = inf: it must be finite"),
+    (SUPPORT, {"offset": {0.0: 0.1, 1.0: 0.2}}, "offset = .*: it must be a number"),
     (SUPPORT, {"offset": 0.1}, "offset = 0.1: it must be two numbers, x and y in m"),
     (SUPPORT, {"offset": (0.0, math.nan)}, r"offset\[1\] = nan: it must be finite"),
 ]
@@ -110,6 +112,13 @@ def test_arguments_of_a_part_between_two_bodies(part, change, message):
         (add_thermal_node, {"conductance": -1.0}, "conductance = -1 W/K: it must be >= 0"),
         (add_thermal_node, {"surroundings": "cold"}, "surroundings = 'cold': it must be a number"),
         (add_thermal_node, {"start": math.nan}, "start = nan: it must be finite"),
+        (add_energy_balance, {"gains": None}, "gains = None: it must be a Mapping"),
+        (
+            add_energy_balance,
+            {"gains": {"a": lambda t: 0.0}},
+            r"gains\['a'\] = .*: it must be a function of mbs, t",
+        ),
+        (add_energy_balance, {"stored": [1.0]}, r"stored\[0\] = 1.0: it must be a function of mbs"),
         (add_energy_balance, {"unit": 0.0}, r"unit = 0 J: it must be > 0"),
         (add_energy_balance, {"unit": math.nan}, r"unit = nan: it must be finite"),
         (
@@ -119,7 +128,7 @@ def test_arguments_of_a_part_between_two_bodies(part, change, message):
         ),
         (
             add_energy_balance,
-            {"gains": {"brake": 0}, "losses": {"brake": 0}},
+            {"gains": {"brake": max}, "losses": {"brake": max}},
             r"'brake' names both a gain and a loss",
         ),
     ],
@@ -128,6 +137,8 @@ def test_arguments_of_a_part_of_the_model(add, wrong, message):
     right = {"heat_capacity": 1.0} if add is add_thermal_node else {"gains": {}, "losses": {}}
     with pytest.raises(ValueError, match=message):
         add(new_model(), **right | wrong)
+    with pytest.raises(ValueError, match="mbs = None: it must be a MainSystem"):
+        add(None, **right)
 
 
 PARTS = {
@@ -140,7 +151,8 @@ UNKNOWN_BODIES = {
     exu.NodeIndex(): "-1 does not exist: this model has 3 nodes",
     exu.ObjectIndex(7): "7 does not exist: this model has 3 objects",
     exu.MarkerIndex(1): "1 does not exist: this model has 0 markers",
-    1.0: r"= 1\.0 is of type float: it must be a NodeIndex",
+    False: "= False is of type bool: it must be a NodeIndex",
+    1.5: r"= 1\.5 is of type float: it must be a NodeIndex",
     "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
     exu.ObjectIndex(2): "2 is an ObjectMassPoint: it must be a body with a node",
 }

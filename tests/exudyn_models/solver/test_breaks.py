@@ -81,7 +81,7 @@ def test_the_next_run_goes_on_from_the_end_if_it_is_asked_to():
         ([0.0], r"breaks\[0\] = 0 s: it must be within the run"),
         ([0.5, 0.5], r"breaks\[1\] = 0.5 s: it must be later than 0.5 s"),
         ([float("nan")], r"breaks\[0\] = nan"),
-        (["0.4 s"], r"breaks\[0\] = '0.4 s'"),
+        (["0.4 s"], r"breaks = \['0.4 s'\]: it must contain only numbers"),
     ],
 )
 def test_invalid_breaks_are_refused(breaks, message):

@@ -122,6 +122,22 @@ def test_a_block_on_a_prescribed_path_feels_friction(solver, radius):
 
 
 @IMPLICIT
+@pytest.mark.parametrize("radius", [0.0, 0.1])
+@pytest.mark.parametrize("across", [0.0, 0.2])
+def test_a_block_on_a_path_that_reverses_passes_through_zero_slip(solver, radius, across):
+    """It may move sideways: at the reversal its slip turns over without a rest."""
+    mbs, rate = new_model(), 5.3
+    block = planar_body(mbs, 1.0, 0.01, [0.0] * 3, [0.2 * rate, across, 0.0])
+    prescribe(mbs, block, lambda t: 0.2 * math.sin(rate * t), lambda t: 0.2 * rate * math.cos(rate * t))
+    heat = clutch(mbs, None, block, 20.0, contact_radius=radius).add_sensor("heat")
+    assert changes_of(mbs, 1.0, 1e-3, solver) == []
+    way = 0.2 * (4.0 + math.sin(rate))
+    assert mbs.GetSensorValues(heat) == pytest.approx(
+        20.0 * way + 0.5 * across**2, abs=0.02 if across else 1e-4
+    )
+
+
+@IMPLICIT
 def test_a_locked_rotor_follows_a_prescribed_shaft_with_a_constant_moment(solver):
     mbs = new_model()
     shaft, wheel = rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
-from compare.claims import TIGHTEST, WORKING, Measured, Measurement, Study, answers_of, refined
+from compare.claims import WORKING, Measured, Measurement, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.claims.parameters import CENTRED
 from compare.engines import Engine
@@ -266,8 +266,8 @@ def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None
             found.append(moment / (pin.friction_force * on_circle(pin)[0]))
         return np.array(found)
 
-    found = refined(functools.partial(rates_of, interval), 10.0 * TIGHTEST)
-    wide = np.abs(rates_of(2.0 * interval, 10.0 * TIGHTEST) - found.value)
+    found = refined(functools.partial(rates_of, interval), WORKING)
+    wide = np.abs(rates_of(2.0 * interval, WORKING) - found.value)
     rounding = 8.0 * np.finfo(float).eps * CENTRED.mass * K / (CENTRED.damping * interval)
     return compared(
         [0.0 if speed > K else -2.0 for speed in starts],

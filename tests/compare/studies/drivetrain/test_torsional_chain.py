@@ -40,3 +40,13 @@ def test_a_clutch_without_load_is_open():
     motion = Chain((1.0, 1.0), [pieces(3.0), NOTHING], [NOTHING]).motion([0.0, 0.0], 2.0)
     assert motion.phases[0].modes == (OPEN,)
     np.testing.assert_allclose(motion.states(np.array([2.0])), [[[6.0, 0.0]], [[6.0, 0.0]]], atol=1e-14)
+
+
+def test_a_clutch_may_connect_geared_rotors_and_the_ground():
+    """A brake of 5 N m stops the second of two speeds that a gear adds up, and a torque of 3 N m cannot move it."""
+    masses = np.array([[3.0, 1.0], [1.0, 2.0]])
+    given = Chain(masses, [NOTHING, pieces(3.0)], [pieces(5.0)], slips=np.array([[0.0, 1.0]]))
+    motion = given.motion([0.0, 2.0], 3.0)
+    deceleration = 2.0 / (2.0 - 1.0 / 3.0)  # the first speed is free
+    assert motion.switches(0) == [(pytest.approx(2.0 / deceleration, rel=1e-14), STUCK)]
+    np.testing.assert_allclose(motion.states(np.array([3.0]))[1], [[2.0 / 3.0, 0.0]], atol=1e-14)

@@ -130,23 +130,29 @@ class _Run:
 
 
 def _choice(train, modes, rests, time):
-    """Choose modes of the contacts ``rests``: static limits first, then sliding ones for all that slip."""
+    """Choose modes of the contacts ``rests``: those slip that static friction cannot hold, as few as possible.
+
+    Static friction acts on all first, and sliding friction on those that then slip, until no other slips.
+    """
     slipped = set()
     while True:
-        found = _consistent(train, modes, rests, time, [train.links[k] for k in slipped])
+        static = [link for k, link in enumerate(train.links) if k in rests and k not in slipped]
+        found = _consistent(train, modes, rests, rests, time, static)
         new = {int(k) for k in rests if found[k] != 0} - slipped
         if not new:
-            return found
+            return _consistent(train, modes, rests, sorted(slipped), time)
         slipped |= new
 
 
-def _consistent(train, modes, rests, time, slipped):
-    for count in range(len(rests) + 1):
-        for moving in map(list, combinations(rests, count)):
+def _consistent(train, modes, rests, may_slip, time, static=None):
+    """Return the modes with the fewest slipping contacts; ``static`` friction, if given, acts on those that slip."""
+    slipped = () if static is None else [train.links[k] for k in may_slip if train.links[k] not in static]
+    for count in range(len(may_slip) + 1):
+        for moving in map(list, combinations(may_slip, count)):
             for signs in product((1, -1), repeat=count):
                 tried = modes.copy()
-                tried[moving] = signs
-                phase = _Phase(train, tried, time, np.array(train.speeds))
+                tried[rests], tried[moving] = 0, signs
+                phase = _Phase(train, tried, time, np.array(train.speeds), static or ())
                 goes = (phase.slip_rates(time)[moving] * signs > ROUNDING).all()
                 if goes and phase.margin(np.array([time]), slipped)[0] > -ROUNDING:
                     return tried
@@ -154,10 +160,10 @@ def _consistent(train, modes, rests, time, slipped):
 
 
 class _Phase:
-    """Motion with constant ``modes`` from the speeds at the time ``start``."""
+    """Motion with constant ``modes`` from the speeds at the time ``start``; ``static`` links slip statically."""
 
-    def __init__(self, train, modes, start, speeds):
-        self.train, self.start, self.initial = train, start, speeds
+    def __init__(self, train, modes, start, speeds, static=()):
+        self.train, self.start, self.initial, self.static = train, start, speeds, static
         self.masses = np.array(train.inertias)
         count = len(self.masses)
         group = np.arange(count + 1)  # the last is the ground
@@ -180,7 +186,8 @@ class _Phase:
         """Return the moments of all rotors, or their integrals, without those of locked contacts; shape (n, ...)."""
         total = np.array([read(moment, t) + 0.0 * t for moment in self.train.moments])
         for link, mode in self.slides:
-            moment = _direction(link, mode) * read(link.capacity, t)
+            ratio = link.static_ratio if link in self.static else 1.0
+            moment = ratio * _direction(link, mode) * read(link.capacity, t)
             for node, sign in ((link.a, -1.0), (link.b, 1.0)):
                 if node != GROUND:
                     total[node] += sign * moment

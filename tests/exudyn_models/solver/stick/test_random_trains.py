@@ -79,3 +79,14 @@ def check(train, solver):
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_random_trains_without_static_friction_change_their_modes_at_the_exact_times(solver):
     assert sum(check(random_train(seed, static=False), solver) for seed in (0, 2, 4, 7)) > 20
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_random_trains_with_static_friction_change_their_modes_at_the_exact_times(solver):
+    """Some have parallel contacts, or a contact that holds only because another one slips."""
+    assert sum(check(random_train(seed, static=True), solver) for seed in (0, 1, 4, 33, 37, 43)) > 40
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_redundant_contacts_at_rest_report_no_changes(solver):
+    check(random_train(5, static=False), solver)
