@@ -19,6 +19,12 @@ DIFFERENCE = 1e-7
 
 MOST_ITERATIONS = 14
 
+CONVERGED, NEAR = 1e-7, 1e-9
+"""Last change of Newton's method, relative in slip and absolute in x and y, after which the next is rounding error."""
+
+NOISE = 10.0
+"""Change, in these units, that may be noise if it hardly falls."""
+
 
 @part
 def rates_at(values: FloatArray, law: Law) -> FloatArray:
@@ -61,7 +67,7 @@ def jacobian_at(x: float, y: float, ux: float, uy: float, r: float, law: Law) ->
         n = (ux / s, uy / s, r / s)
         at = friction(n[0], n[1], n[2], law)
         found = np.zeros((3, 3))
-        for j in range(2 if law.rim == 0.0 else 3):
+        for j in range(2 if law.outer == 0.0 else 3):
             h = DIFFERENCE
             moved = friction(
                 n[0] + (h if j == 0 else 0.0), n[1] + (h if j == 1 else 0.0), n[2] + (h if j == 2 else 0.0), law
@@ -76,41 +82,103 @@ def jacobian_at(x: float, y: float, ux: float, uy: float, r: float, law: Law) ->
 
 
 @part
-def solve(start: FloatArray, h: float, guess: FloatArray, tolerance: float, law: Law) -> tuple[bool, FloatArray]:
+def residual_of(values: FloatArray, start: FloatArray, h: float, n: int, law: Law) -> FloatArray:
+    """Return what the first ``n`` unknowns at the nodes lack, shape (NODES·n,)."""
+    rates = rates_at(values, law)
+    result = np.empty(NODES * n)
+    for i in range(NODES):
+        for v in range(n):
+            total = 0.0
+            for j in range(NODES):
+                total += INTEGRAL[i, j] * rates[j, v]
+            result[n * i + v] = values[i, v] - start[v] - h * total
+    return result
+
+
+@part
+def newton_matrix(values: FloatArray, h: float, n: int, law: Law) -> FloatArray:
+    """Return the derivatives of :func:`residual_of`, shape (NODES·n, NODES·n)."""
+    matrix = np.zeros((NODES * n, NODES * n))
+    for j in range(NODES):
+        J = jacobian_at(values[j, 0], values[j, 1], values[j, 2], values[j, 3], values[j, 4], law)
+        for i in range(NODES):
+            factor = -h * INTEGRAL[i, j]
+            for v in range(n):
+                for w in range(n):
+                    matrix[n * i + v, n * j + w] = factor * J[v, w]
+        for v in range(n):
+            matrix[n * j + v, n * j + v] += 1.0
+    return matrix
+
+
+@part
+def solve_linear(matrix: FloatArray, right: FloatArray) -> None:
+    """Replace ``right``, shape (n,), by the solution of a system; both are overwritten, and nan if it is singular.
+
+    By Gauss's elimination with pivots, because LAPACK's rounding differs between libraries.
+    """
+    n = len(right)
+    work = np.empty(n)
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if best != k:
+            work[k:] = matrix[k, k:]
+            matrix[k, k:] = matrix[best, k:]
+            matrix[best, k:] = work[k:]
+            right[k], right[best] = right[best], right[k]
+        if matrix[k, k] == 0.0:
+            right[:] = math.nan
+            return
+        for i in range(k + 1, n):
+            factor = matrix[i, k] / matrix[k, k]
+            if factor != 0.0:
+                np.multiply(matrix[k, k + 1 :], factor, work[k + 1 :])
+                np.subtract(matrix[i, k + 1 :], work[k + 1 :], matrix[i, k + 1 :])
+                right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        total = right[k]
+        for j in range(k + 1, n):
+            total -= matrix[k, j] * right[j]
+        right[k] = total / matrix[k, k]
+
+
+@part
+def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[bool, FloatArray]:
     """Return whether Newton's method converged, and the unknowns at the nodes, shape (NODES, 5)."""
-    values = guess.copy()
-    identity, size = np.eye(5), 5 * NODES
-    last = math.inf
+    values, last = guess.copy(), math.inf
+    n = 5 if law.outer > 0.0 else 4
     for _ in range(MOST_ITERATIONS):
-        rates = rates_at(values, law)
-        residual = values - start - h * np.dot(INTEGRAL, rates)
-        if not np.all(np.isfinite(residual)):
-            return False, values
-        matrix = np.empty((size, size))
-        for j in range(NODES):
-            J = jacobian_at(values[j, 0], values[j, 1], values[j, 2], values[j, 3], values[j, 4], law)
-            for i in range(NODES):
-                block = (-h * INTEGRAL[i, j]) * J
-                if i == j:
-                    block = block + identity
-                matrix[5 * i : 5 * i + 5, 5 * j : 5 * j + 5] = block
-        rows = np.empty(size)
-        for i in range(size):
-            rows[i] = 1.0 / np.max(np.abs(matrix[i]))
-            matrix[i] *= rows[i]
-        change = np.linalg.solve(matrix, residual.copy().reshape(size) * rows).reshape((NODES, 5))
-        if not np.all(np.isfinite(change)):
-            return False, values
+        residual = residual_of(values, start, h, n, law)
+        matrix = newton_matrix(values, h, n, law)
+        for i in range(NODES * n):
+            most = abs(residual[i])
+            for j in range(NODES * n):
+                most = max(most, abs(matrix[i, j]))
+            if not most < math.inf:
+                return False, values
+            for j in range(NODES * n):
+                matrix[i, j] /= most
+            residual[i] /= most
+        solve_linear(matrix, residual)
+        change = residual
         largest = 0.0
         for i in range(NODES):
-            s = math.sqrt(values[i, 2] ** 2 + values[i, 3] ** 2 + values[i, 4] ** 2)
-            moved = math.sqrt(change[i, 2] ** 2 + change[i, 3] ** 2 + change[i, 4] ** 2)
+            s = moved = 0.0
+            for v in range(2, n):
+                s += values[i, v] ** 2
+                moved += change[n * i + v] ** 2
+            s, moved = math.sqrt(s), math.sqrt(moved)
+            if not moved < math.inf:
+                return False, values
             shrunk = min(1.0, 0.7 * s / moved) if moved > 0.0 else 1.0
-            for v in range(5):
-                values[i, v] -= (shrunk if v > 1 else 1.0) * change[i, v]
-            largest = max(largest, moved / (1e-9 * s + 1e-15 * h))
-            largest = max(largest, abs(change[i, 0]) / 1e-13, abs(change[i, 1]) / 1e-13)
-        if largest < 1.0 or (largest < 1e3 and largest > 0.5 * last):
+            for v in range(n):
+                values[i, v] -= (shrunk if v > 1 else 1.0) * change[n * i + v]
+            largest = max(largest, moved / (CONVERGED * s + 1e-15 * h))
+            largest = max(largest, abs(change[n * i]) / NEAR, abs(change[n * i + 1]) / NEAR)
+        if largest < 1.0 or (largest < NOISE and largest > 0.5 * last):
             return True, values
         last = largest
     return False, values
@@ -122,8 +190,17 @@ def series(start: FloatArray, angle: float, h: float, values: FloatArray, law: L
     samples = np.empty((NODES + 1, 6))
     samples[0, :5], samples[1:, :5] = start, values
     samples[0, 5] = angle
-    samples[1:, 5] = angle + h * np.dot(INTEGRAL, law.omega + values[:, 4] / law.gyration)
-    return np.dot(FROM_START, samples)
+    for i in range(NODES):
+        turned = 0.0
+        for j in range(NODES):
+            turned += INTEGRAL[i, j] * (law.omega + values[j, 4] / law.gyration)
+        samples[1 + i, 5] = angle + h * turned
+    result = np.zeros((NODES + 1, 6))
+    for i in range(NODES + 1):
+        for j in range(NODES + 1):
+            for v in range(6):
+                result[i, v] += FROM_START[i, j] * samples[j, v]
+    return result
 
 
 @part

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 
-from reference_model.core.forces import Law, growth, pull, shares, tangent
+from reference_model.core.collocation import solve_linear
+from reference_model.core.contact import shares
+from reference_model.core.forces import Law, growth, pull, tangent
 from reference_model.core.parts import part
 
 GRAZING = 1e-8
@@ -129,9 +131,9 @@ def _first_release(x: float, y: float, law: Law) -> float:
 @part
 def _growth_at(strong: float, turning: float, beta: float, law: Law) -> tuple[float, float]:
     c, s = math.cos(beta), math.sin(beta)
-    along_slip, along_rim = shares(abs(c), law.rim * abs(s))
-    force = strong - law.friction * math.copysign(along_slip, c)
-    moment = turning - law.friction * law.rim * math.copysign(along_rim, s)
+    resistance, twist = shares(abs(c), abs(s), law.outer, law.inner, law.load)
+    force = strong - law.friction * math.copysign(resistance, c)
+    moment = turning - law.friction * math.copysign(twist, s)
     return force * c + moment * s, moment * c - force * s
 
 
@@ -141,7 +143,7 @@ def direction(x: float, y: float, law: Law) -> tuple[float, float, float]:
     ax, ay = pull(x, y, 0.0, 0.0, law)
     strong, turning = math.sqrt(ax * ax + ay * ay), -law.shaft * law.lag
     beta = 0.0
-    if law.rim > 0.0:
+    if law.outer > 0.0:
         spacing, most, best = math.pi / 64.0, -math.inf, 0
         for i in range(65):
             value = _growth_at(strong, turning, -0.5 * math.pi + i * spacing, law)[0]
@@ -188,10 +190,11 @@ def begun(x: float, y: float, n: tuple[float, float, float], law: Law) -> tuple[
             for k in range(3):
                 total += matrix[i, k] * ((1.0 if k == j else 0.0) - n[k] * n[j])
             system[i, j] = total
-    if law.rim == 0.0:
+    if law.outer == 0.0:
         system[2, 2] = 1.0
         system[2, 0] = system[2, 1] = system[0, 2] = system[1, 2] = 0.0
-    solved = np.linalg.solve(system, change)
+    solve_linear(system, change)
+    solved = change
     gain = float(solved[0] * n[0] + solved[1] * n[1] + solved[2] * n[2])
     return first, gain, solved[0] - gain * n[0], solved[1] - gain * n[1], solved[2] - gain * n[2]
 

@@ -1,4 +1,4 @@
-"""One trajectory by the core, interpreted or compiled."""
+"""One trajectory of a pin, a ring or an annulus by the core, interpreted or compiled."""
 
 import functools
 import math
@@ -8,105 +8,191 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 
-from reference_model.contact.contact_law import Ring, contact_of
+from reference_model.contact.annulus import Annulus
+from reference_model.contact.contact_law import Contact, Pin, Ring, contact_of
+from reference_model.core.contact import shares
 from reference_model.core.forces import Law
-from reference_model.core.parts import PARTS
-from reference_model.core.run import (
+from reference_model.core.memory import (
     EVALUATIONS,
     FAILS,
     FULL,
     PATIENCE,
-    FEW,
     PHASES,
     RECORDED,
     RUNS,
     SLIPS,
     STATUS,
+    STEP,
     STEPS,
-    advance,
 )
-from reference_model.motion.disc_equations import DiscMotion
-from reference_model.motion.exact import _Frame
+from reference_model.core.parts import compiled
+from reference_model.core.run import advance
+from reference_model.motion.frame import Frame
 from reference_model.motion.nondimensional import Units
-from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.stick import stuck_centre
-from reference_model.systems import DiscOnDisc, System, checked_state, checked_times, checked_tolerance
-from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
+from reference_model.support import Support
+from reference_model.systems import (
+    DiscOnDisc,
+    FloatArray,
+    System,
+    checked_state,
+    checked_times,
+    checked_tolerance,
+)
+from reference_model.trajectory import SimulationError, Solution, StepCount, Trajectory, phases_of
 
-METHOD = "DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
+METHOD = "compiled DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
 
 LOCAL, LEAST = 0.05, 3e-14
 """Tolerance of a step as a share of the motion's, and its smallest value."""
 
-MOST_STEPS = 200_000
-"""Number of steps of a call, below a second in compiled code."""
+SLOW_SPRINGS = 0.1
+"""Scaled natural frequency below which steps become more accurate: position errors are velocity errors over it."""
+
+FIRST_STEP, FEW = 0.01, 15.0
+"""First explicit step in stretched time, and number of short steps before collocation is tried."""
+
+MOST_WORK = 20_000.0
+"""Work of a call in explicit steps, below a second, after which Python can handle an interruption."""
+
+THINNEST = 1e-3
+"""Smallest width of an annulus over its radius: a difference of two discs loses digits in a thinner one."""
+
+Core = Callable[..., None]
 
 
 @functools.cache
-def compiled() -> Callable[..., None]:
-    import numba
-    from numba.extending import register_jitable
-
-    for function in PARTS:
-        register_jitable(error_model="numpy")(function)
-    found: Callable[..., None] = numba.njit(error_model="numpy", cache=True, nogil=True)(advance)
-    return found
+def compiled_core() -> Core:
+    """Return :func:`reference_model.core.run.advance` as compiled code."""
+    return compiled(advance)
 
 
-def law_of(system: System, unit: Units) -> Law:
-    """Return the scaled law of a pin or a ring."""
-    centre = unit.of_pin(SlipMotion.of(system))
-    hold, rim, shaft, lag, gyration = centre.friction, 0.0, 0.0, 0.0, 1.0
-    if isinstance(system, DiscOnDisc):
-        contact = Ring(system.contact_radius)
-        motion = unit.of_disc(DiscMotion.of(system, contact))
-        rim = system.contact_radius / (motion.gyration * unit.length)
-        shaft, lag, gyration = motion.shaft_rate, motion.lag, motion.gyration
-        stuck = stuck_centre(motion, contact) if centre.friction > 0.0 else None
-        hold = stuck.friction if stuck is not None else -1.0
-    support = centre.support
-    return Law(
-        centre.damping, support.stiffness, support.offset, support.hardening, support.stop_gap,
-        support.stop_stiffness, centre.friction, hold, centre.disc_speed, rim, shaft, lag, gyration,
-        0.5 * centre.friction,
-    )  # fmt: skip
-
-
-def simulate(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9, code: Any = advance
+def simulate_compiled(
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+    contact: Contact | None = None,
 ) -> Trajectory:
+    """Simulate like :func:`reference_model.simulate`, by compiled code; not for discs on single points.
+
+    Raises ``ValueError`` if the core does not know the contact.
+    """
+    require_known(contact_of(system, contact))
+    return simulate_by(compiled_core(), system, initial_state, times, tolerance=tolerance, contact=contact)
+
+
+def require_known(contact: Contact) -> None:
+    """Raise ``ValueError`` if the core does not contain a law."""
+    if not isinstance(contact, Pin | Ring | Annulus):
+        raise ValueError(
+            f"contact = {contact}: compiled runs support a Ring, an Annulus and the law of the system's parameters; "
+            "omit compiled=True"
+        )
+    if isinstance(contact, Annulus) and contact.pressure is not None:
+        raise ValueError("pressure: compiled runs support only a uniform one, None; omit compiled=True")
+    if isinstance(contact, Annulus) and contact.inner_radius > (1.0 - THINNEST) * contact.outer_radius:
+        raise ValueError(
+            f"inner_radius = {contact.inner_radius:g} m: compiled runs support annuli with a width of at least "
+            f"{THINNEST:g} of outer_radius = {contact.outer_radius:g} m; use a Ring, or omit compiled=True"
+        )
+
+
+def law_of(system: System, contact: Any, unit: Units) -> Law:
+    """Return the scaled law of a pin, or a disc with this contact."""
+    support = Support.of(system).scaled(unit.time**2 / system.mass, unit.length)
+    friction = system.friction_force / system.mass * unit.time**2 / unit.length
+    hold, outer, inner, load, shaft, lag, gyration = friction, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
+    if isinstance(system, DiscOnDisc):
+        gyration = math.sqrt(system.polar_inertia / system.mass)
+        lag = gyration * (system.disc_speed - system.shaft_speed) / unit.speed
+        shaft = system.shaft_damping / system.polar_inertia * unit.time
+        if isinstance(contact, Ring):
+            outer = inner = contact.radius / gyration
+        else:
+            outer, inner = contact.outer_radius / gyration, contact.inner_radius / gyration
+            load = 1.0 / ((1.0 - inner / outer) * (1.0 + inner / outer))
+        gyration /= unit.length
+        if friction > 0.0:
+            hold = holding_force(friction, abs(shaft * lag), outer, inner, load)
+    return Law(
+        damping=system.damping / system.mass * unit.time,
+        stiffness=support.stiffness,
+        offset=support.offset,
+        hardening=support.hardening,
+        gap=support.stop_gap,
+        stop=support.stop_stiffness,
+        friction=friction,
+        hold=hold,
+        omega=system.disc_speed * unit.time,
+        outer=outer,
+        inner=inner,
+        load=load,
+        shaft=shaft,
+        lag=lag,
+        gyration=gyration,
+        stretch=0.5 * friction,
+    )
+
+
+def holding_force(friction: float, asked: float, outer: float, inner: float, load: float) -> float:
+    """Return the force on the limit surface at the moment that the shaft exerts; -1 beyond the largest moment."""
+    most = shares(0.0, 1.0, outer, inner, load)[1]
+    if asked > friction * most:
+        return -1.0
+
+    def at(alpha: float) -> tuple[float, float]:
+        return shares(math.cos(alpha), math.sin(alpha) / most, outer, inner, load)
+
+    alpha = 0.0
+    if asked > 0.0:
+        lacking = lambda alpha: friction * at(alpha)[1] - asked  # noqa: E731
+        alpha = float(brentq(lacking, 0.0, 0.5 * math.pi, xtol=1e-16, rtol=1e-15))
+    return friction * at(alpha)[0]
+
+
+def simulate_by(
+    core: Core,
+    system: System,
+    initial_state: ArrayLike,
+    times: ArrayLike,
+    *,
+    tolerance: float = 1e-9,
+    contact: Contact | None = None,
+) -> Trajectory:
+    """Simulate like :func:`reference_model.simulate` by ``core``, interpreted or compiled."""
     clock = time.perf_counter()
     start, moments = checked_state(system, initial_state), checked_times(times)
     tolerance = checked_tolerance(tolerance)
-    contact_of(system, None)
+    law = contact_of(system, contact)
     unit = Units.of(system, start)
-    law, frame = law_of(system, unit), _Frame.of(system, unit)
-    unknowns = frame.unknowns(start)
-    disc = isinstance(system, DiscOnDisc)
+    frame = Frame.of(system, unit)
+    parameters = np.array(law_of(system, law, unit))
+    columns = [0, 1, 5, 2, 3, 4] if isinstance(system, DiscOnDisc) else [0, 1, 2, 3]
     state = np.zeros(7)
-    state[:2] = unknowns[:2]
-    if disc:
-        state[5], state[2:5] = unknowns[2], unknowns[3:6]
-    else:
-        state[2:4] = unknowns[2:4]
+    state[columns] = frame.unknowns(start)
     scaled = (moments - moments[0]) / unit.time
-    local = max(tolerance * LOCAL * min(1.0, unit.springs(system) / 0.1), LEAST)
-    out, memory, phases = np.zeros((len(moments), 6)), np.zeros(12), np.zeros((64, 8))
-    memory[PATIENCE] = FEW
-    memory[RECORDED], out[0] = 1.0, [*state[:5], state[5]]
-    end = float(scaled[-1])
-    while True:
-        code(state, memory, local, end, scaled, out, phases, MOST_STEPS, law)
+    local = max(tolerance * LOCAL * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
+    out, memory, phases = np.zeros((len(moments), 6)), np.zeros(13), np.zeros((64, 8))
+    memory[PATIENCE], memory[STEP], memory[RECORDED] = FEW, FIRST_STEP, 1.0
+    end, count = float(scaled[-1]), StepCount(float(scaled[-1]))
+    while memory[STATUS] == RUNS:
+        core(state, memory, local, end, scaled, out, phases, MOST_WORK, parameters)
         if memory[STATUS] == FULL:
             phases = np.vstack((phases, np.zeros_like(phases)))
             memory[STATUS] = RUNS
-        elif memory[STATUS] != RUNS:
-            break
-    at = float(moments[0] + state[6] * unit.time)
-    if memory[STATUS] == FAILS:
-        raise SimulationError(f"the integrator failed after t = {at:g} s; try a larger tolerance than {tolerance:g}")
-    columns = [0, 1, 5, 2, 3, 4] if disc else [0, 1, 2, 3]
+        at = float(moments[0] + state[6] * unit.time)
+        if memory[STATUS] == FAILS:
+            raise SimulationError(
+                f"the integrator failed after t = {at:g} s; try a larger tolerance than {tolerance:g}"
+            )
+        if too_many := count.reach(int(memory[STEPS]), float(state[6])):
+            raise SimulationError(
+                f"stopped at t = {at:g} s because {too_many}: the parameters are very stiff, or the motion is very "
+                "long; simulate it in parts, or with a larger tolerance"
+            )
     states = frame.states(out[:, columns])
     states[0] = start
     begun = [

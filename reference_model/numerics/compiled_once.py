@@ -1,7 +1,8 @@
 """Functions called from Python, compiled once per machine and kept on disk until their sources change.
 
 numba's cache checks only the file of the function itself, although it compiles functions and constants of other files
-into it. So each package keeps compiled functions in a folder named after a digest of its sources.
+into it. So each package keeps compiled functions in a folder named after a digest of its sources, or of the bytecode
+and the constants of the functions that are compiled.
 """
 
 import gc
@@ -12,13 +13,15 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+import types
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 
 with suppress(ImportError):  # on Windows
     import fcntl
@@ -41,30 +44,35 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    It runs without the interpreter lock. ``package`` is the folder of all sources compiled into it.
+    It runs without the interpreter lock. ``package`` is the folder of all sources compiled into it, and ``digest``
+    that of :func:`digest_of_text` if it is known.
     """
 
-    def __init__(self, function: Callable[..., None], package: Path) -> None:
-        self.py_func, self.package = function, package
+    def __init__(self, function: Callable[..., None], package: Path, digest: str = "") -> None:
+        self.py_func, self.package, self.digest = function, package, digest or digest_of(package)
         self.kinds: dict[tuple[Any, ...], Any] = {}
         self.__doc__ = function.__doc__
-        digest_of(package)
 
     def __call__(self, *arguments: Any) -> None:
         """Call the function, compiled or loaded for new argument types."""
         kind = tuple(map(numba.typeof, arguments))
         if kind not in self.kinds:
-            self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)
+            self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True, digest=self.digest)
         self.kinds[kind](*arguments)
 
 
 def compiled_for(
-    kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
+    kind: tuple[Any, ...],
+    function: Callable[..., Any],
+    package: Path,
+    nogil: bool = False,
+    digest: str = "",
 ) -> Any:
     """Return numba's dispatcher of a function for these types; other threads and processes wait for it."""
     with _one_at_a_time, ExitStack() as stack:
-        folder = folder_of(package)
+        folder = folder_of(package, digest or digest_of(package))
         if folder:
+            function = _placed(function, Path(folder))
             stack.enter_context(_locked(Path(folder) / f"{function.__name__}.lock"))
         timer = threading.Timer(LONG, _announce)
         timer.daemon = True
@@ -117,14 +125,45 @@ def digest_of(package: Path) -> str:
     return digest.hexdigest()[:16]
 
 
+def digest_of_text(functions: Iterable[Callable[..., Any]]) -> str:
+    """Return a digest of what numba compiles: the bytecode of functions, and the constants that they use."""
+    digest = hashlib.sha256()
+    for function in functions:
+        code = function.__code__
+        own = [constant for constant in code.co_consts if constant != function.__doc__]
+        outer = [(name, _constant(function.__globals__[name])) for name in code.co_names if name in function.__globals__]
+        digest.update(repr((function.__name__, code.co_code, code.co_varnames, code.co_names, own, outer)).encode())
+    return digest.hexdigest()[:16]
+
+
+def _constant(value: Any) -> Any:
+    """Return what of a global name is compiled; functions and modules are known by their names."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    return value if isinstance(value, int | float | str | tuple) else getattr(value, "_fields", "")
+
+
+def _placed(function: Callable[..., Any], folder: Path) -> Callable[..., Any]:
+    """Return ``function`` as if it stood in a file of ``folder``, because numba compares the stamps of source files."""
+    file = folder / f"{function.__name__}.py"
+    if not file.exists():
+        file.touch()
+    code = function.__code__.replace(co_filename=str(file), co_firstlineno=1)
+    placed = types.FunctionType(
+        code, function.__globals__, function.__name__, function.__defaults__, function.__closure__
+    )
+    placed.__module__, placed.__qualname__ = function.__module__, function.__qualname__
+    return placed
+
+
 @cache
-def folder_of(package: Path) -> str:
-    """Return the folder of compiled functions for the present sources, or "" if none is writable.
+def folder_of(package: Path, digest: str) -> str:
+    """Return the folder of compiled functions with this digest, or "" if none is writable.
 
     It lies in ``NUMBA_CACHE_DIR`` if set, else next to the sources, or in the user's cache if these are read-only.
     """
     for place in _places(package):
-        folder = place / f"{package.name}-{digest_of(package)}"
+        folder = place / f"{package.name}-{digest}"
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()

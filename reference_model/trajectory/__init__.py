@@ -40,13 +40,17 @@ class StepCount:
 
     def count(self, t: float) -> str:
         """Count a step that ends at ``t``; return a message if there are or will be too many, else ""."""
-        self.steps += 1
-        if self.steps > MOST_STEPS:
+        return self.reach(self.steps + 1, t)
+
+    def reach(self, steps: int, t: float) -> str:
+        """Like :meth:`count`, for the number of ``steps`` up to ``t``."""
+        self.steps = steps
+        if steps > MOST_STEPS:
             return f"more than {MOST_STEPS:,} steps are needed"
         since, counted = self._looked_back
-        if self.steps == counted + LOOK_BACK:
+        if steps >= counted + LOOK_BACK:
             self.look_from(t)
-            if (self.end - t) * LOOK_BACK > MOST_AHEAD * (t - since):
+            if (self.end - t) * (steps - counted) > MOST_AHEAD * (t - since):
                 return f"more than {MOST_AHEAD:,} further steps are needed"
         return ""
 

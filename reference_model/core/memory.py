@@ -1,0 +1,66 @@
+"""The memory of a run between calls, and the motion of a body that sticks."""
+
+import math
+
+from reference_model.core.explicit import Unknowns
+from reference_model.core.forces import Law
+from reference_model.core.parts import part
+from reference_model.systems import FloatArray
+
+SLIPS, STICKS = 1.0, 2.0
+"""Kinds of phases."""
+
+(STEP, SPAN, SHORT, PATIENCE, SIDE_OF_STOP, SIDE_OF_RIM, PHASE, STEPS, EVALUATIONS, WORK, RECORDED, PHASES, STATUS) = (
+    range(13)
+)
+"""Indices into the memory of a run, which continues from it in the next call.
+
+It contains the next explicit step, the time of the last one, the number of recent short steps and the number that
+calls for collocation, the signs of two surfaces, the kind of the current phase, the numbers of steps and evaluations,
+the work in explicit steps, the numbers of recorded times and phases, and whether the run goes on.
+"""
+
+RUNS, ENDS, FAILS, FULL = 0.0, 1.0, 2.0, 3.0
+"""Values of the status; FULL asks for more room for phases."""
+
+
+@part
+def speed_of(y: Unknowns) -> float:
+    """Return the slip speed of centre and rim together."""
+    return math.sqrt(y[2] * y[2] + y[3] * y[3] + y[4] * y[4])
+
+
+@part
+def put(row: FloatArray, y: Unknowns) -> None:
+    """Write the unknowns except the time."""
+    for v in range(6):
+        row[v] = y[v]
+
+
+@part
+def carried(y: Unknowns, delay: float, way: float, slip: float, law: Law) -> Unknowns:
+    """Return the unknowns of a body that sticks or creeps; ``way`` and ``slip`` in units of the slip of ``y``."""
+    c, s = math.cos(law.omega * delay), math.sin(law.omega * delay)
+    x, z = y[0] + way * y[2], y[1] + way * y[3]
+    ux, uy = slip * y[2], slip * y[3]
+    return (
+        c * x - s * z, s * x + c * z, c * ux - s * uy, s * ux + c * uy, slip * y[4],
+        y[5] + law.omega * delay + way * y[4] / law.gyration, y[6] + delay,
+    )  # fmt: skip
+
+
+@part
+def enter(memory: FloatArray, phases: FloatArray, kind: float, y: Unknowns) -> None:
+    """Begin a phase unless it is of the current kind."""
+    if memory[PHASE] != kind:
+        memory[PHASE] = kind
+        row = phases[int(memory[PHASES])]
+        row[0], row[1] = kind, y[6]
+        put(row[2:], y)
+        memory[PHASES] += 1.0
+
+
+@part
+def pending(memory: FloatArray, times: FloatArray, until: float) -> bool:
+    """Return whether a requested time up to ``until`` is still to be recorded."""
+    return memory[RECORDED] < len(times) and times[int(memory[RECORDED])] <= until

@@ -1,0 +1,132 @@
+"""Unknowns at the requested times, within steps and in closed form."""
+
+import math
+
+from reference_model.core.collocation import at
+from reference_model.core.explicit import SIZE, Unknowns, component, inside, take
+from reference_model.core.forces import Law, rates
+from reference_model.core.memory import EVALUATIONS, RECORDED, carried, pending, put
+from reference_model.core.parts import part
+from reference_model.systems import FloatArray
+
+AS_GOOD = 20.0
+"""Largest error of the interpolant, in tolerances of a step, within the requested tolerance."""
+
+NEAR = 1e-8
+"""Correction of Newton's method after which the next one is rounding error."""
+
+MOST_CORRECTIONS = 20
+
+Creep = tuple[float, float, float, float]
+
+
+@part
+def is_accurate(h: float, F: FloatArray, tolerance: float, law: Law) -> bool:
+    """Return whether the defect of the interpolant in the middle of a step, over half of it, is small enough."""
+    y = inside(F, 0.5)
+    found = rates(y[0], y[1], y[2], y[3], y[4], law)
+    error = 0.0
+    for v in range(SIZE):
+        scale = tolerance * (1.0 + abs(y[v]) if v < 5 else 1.0)
+        error = max(error, 0.5 * abs(component(F, 0.5, v)[1] - h * found[v]) / scale)
+    return error <= AS_GOOD
+
+
+@part
+def record_step(
+    y: Unknowns, new: Unknowns, F: FloatArray, memory: FloatArray, times: FloatArray, out: FloatArray
+) -> None:
+    """Record times within an explicit step by its interpolant."""
+    while pending(memory, times, new[6]):
+        t = times[int(memory[RECORDED])]
+        place = (t - y[6]) / (new[6] - y[6])
+        for _ in range(MOST_CORRECTIONS):
+            reached, pace = component(F, place, 6)
+            change = (t - reached) / pace if pace > 0.0 else 0.0
+            place = min(max(place + change, 0.0), 1.0)
+            if abs(change) < NEAR:
+                break
+        put(out[int(memory[RECORDED])], inside(F, place))
+        memory[RECORDED] += 1.0
+
+
+@part
+def record_by_steps(
+    y: Unknowns, first: Unknowns, new: Unknowns, h: float, memory: FloatArray, times: FloatArray, out: FloatArray,
+    law: Law, K: FloatArray,
+) -> None:  # fmt: skip
+    """Record times within an explicit step by shorter steps from its start."""
+    while pending(memory, times, new[6]):
+        t = times[int(memory[RECORDED])]
+        tau = h * (t - y[6]) / (new[6] - y[6])
+        there, f = y, first
+        for _ in range(MOST_CORRECTIONS):
+            there = take(y, first, tau, law, K)[0]
+            memory[EVALUATIONS] += 12.0
+            f = rates(there[0], there[1], there[2], there[3], there[4], law)
+            late = (t - there[6]) / f[6]
+            if abs(late) < NEAR * h:
+                break
+            tau = min(max(tau + late, 0.0), h)
+        late = (t - there[6]) / f[6]
+        row = out[int(memory[RECORDED])]
+        for v in range(6):
+            row[v] = there[v] + late * f[v]
+        memory[RECORDED] += 1.0
+
+
+@part
+def record_series(
+    t: float, h: float, end: float, coefficients: FloatArray, memory: FloatArray, times: FloatArray, out: FloatArray
+) -> None:
+    """Record times within a step of collocation that begins at ``t``."""
+    while pending(memory, times, end):
+        found = at(coefficients, (times[int(memory[RECORDED])] - t) / h)
+        out[int(memory[RECORDED])] = found
+        memory[RECORDED] += 1.0
+
+
+@part
+def creeping(y: Unknowns, delay: float, creep: Creep, law: Law) -> Unknowns:
+    """Return the unknowns of a body that creeps, or sticks if the first number of ``creep`` is zero."""
+    share, slow, rest, fast = creep
+    if share == 0.0:
+        return carried(y, delay, 0.0, 0.0, law)
+    s = share + rest
+    slip = share * math.exp(-slow * delay) + rest * math.exp(-fast * delay)
+    way = -share / slow * math.expm1(-slow * delay) - rest / fast * math.expm1(-fast * delay)
+    return carried(y, delay, way / s, slip / s, law)
+
+
+@part
+def record_carried(
+    y: Unknowns, until: float, creep: Creep, memory: FloatArray, times: FloatArray, out: FloatArray, law: Law
+) -> Unknowns:
+    """Record a body that sticks or creeps until a time; return its unknowns then."""
+    while pending(memory, times, until):
+        put(out[int(memory[RECORDED])], creeping(y, times[int(memory[RECORDED])] - y[6], creep, law))
+        memory[RECORDED] += 1.0
+    end = creeping(y, until - y[6], creep, law)
+    return (end[0], end[1], end[2], end[3], end[4], end[5], until)
+
+
+@part
+def record_falling(
+    y: Unknowns, left: float, end: float, memory: FloatArray, times: FloatArray, out: FloatArray, law: Law
+) -> Unknowns:
+    """Follow the last ``left`` of slip, which falls linearly; return the body at rest, or at the end of the run."""
+    until = min(y[6] + left, end)
+    while pending(memory, times, until):
+        put(out[int(memory[RECORDED])], falling(y, times[int(memory[RECORDED])] - y[6], left, law))
+        memory[RECORDED] += 1.0
+    last = falling(y, until - y[6], left, law)
+    if y[6] + left <= end:
+        return (last[0], last[1], 0.0, 0.0, 0.0, last[5], until)
+    return (last[0], last[1], last[2], last[3], last[4], last[5], until)
+
+
+@part
+def falling(y: Unknowns, delay: float, left: float, law: Law) -> Unknowns:
+    """Return the unknowns after ``delay`` of slip that falls linearly to zero within ``left``."""
+    share = delay / left if left > 0.0 else 1.0
+    return carried(y, delay, delay * (1.0 - 0.5 * share), 1.0 - share, law)

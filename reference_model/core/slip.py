@@ -1,0 +1,177 @@
+"""Slip by explicit steps in stretched time, and how it ends."""
+
+import math
+
+from reference_model.core.explicit import Unknowns, component, error_of, factor_of, interpolate, take
+from reference_model.core.forces import Law, rates
+from reference_model.core.memory import (
+    EVALUATIONS,
+    FAILS,
+    PATIENCE,
+    SHORT,
+    SIDE_OF_RIM,
+    SIDE_OF_STOP,
+    SPAN,
+    STATUS,
+    STEP,
+    STEPS,
+    WORK,
+    pending,
+    speed_of,
+)
+from reference_model.core.parts import part
+from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
+from reference_model.core.rest import creep_of
+from reference_model.core.surfaces import crossing, has_rim, has_stop, may_cross
+from reference_model.systems import FloatArray
+
+REST_TIME = 1e-12
+"""Largest error of the closed form for the time of coming to rest."""
+
+REVERSAL = 1e-13
+"""Slip below which slip that friction cannot hold counts as reversed."""
+
+USUAL = 0.02
+"""A step is short if relative change of slip plus time are below this."""
+
+LEAST_STEP = 1e-14
+"""Smallest explicit step in stretched time."""
+
+SLOW, TURNED_BACK = 1e-3, 256.0
+"""Slip speed below which slip must not turn back in a step, and the error assigned if it does."""
+
+CREEP_SHARE = 0.01
+"""Largest error of creep in closed form, as a share of the tolerance of a step."""
+
+NOWHERE, AT_END = -1, -2
+"""Events of a step in addition to the indices of the surfaces."""
+
+
+@part
+def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
+    """Return the time to rest if slip is about to end, 0 if it has ended to rounding error, -1 otherwise.
+
+    ``f`` are the rates in stretched time.
+    """
+    s = speed_of(y)
+    if law.friction == 0.0 or not s > 0.0:
+        return -1.0
+    fall = -(f[2] * y[2] + f[3] * y[3] + f[4] * y[4]) / (s * f[6])
+    if fall <= 0.0:
+        return -1.0
+    left = s / fall
+    if left * left < REST_TIME:
+        across = 0.0
+        for v in range(2, 5):
+            across += (f[v] / f[6] + fall * y[v] / s) ** 2
+        pace = abs(law.omega) + law.shaft + 1.0
+        if left * math.sqrt(across) / fall + left * left * pace < REST_TIME:
+            return left
+    return 0.0 if s < REVERSAL else -1.0
+
+
+@part
+def creep_from(y: Unknowns, tolerance: float, law: Law) -> Creep:
+    """Return :func:`creep_of` of these unknowns."""
+    return creep_of(y[0], y[1], y[2], y[3], y[4], law, CREEP_SHARE * tolerance)
+
+
+@part
+def slip_ends(y: Unknowns, f: Unknowns, memory: FloatArray, tolerance: float, law: Law) -> bool:
+    """Return whether explicit steps should not go on."""
+    if law.friction == 0.0:
+        return False
+    return (
+        memory[SHORT] >= memory[PATIENCE] or time_left(y, f, law) >= 0.0 or creep_from(y, tolerance, law)[0] > 0.0
+    )
+
+
+@part
+def first_event(
+    y: Unknowns, new: Unknowns, h: float, end: float, memory: FloatArray, law: Law, K: FloatArray, F: FloatArray
+) -> tuple[float, int]:
+    """Return the share of a step up to the first crossing of a surface or the end of the run, and which it is."""
+    stops = has_stop(law) and may_cross(SIDE_OF_STOP, memory[SIDE_OF_STOP], y, new, law)
+    rests = has_rim(law) and may_cross(SIDE_OF_RIM, memory[SIDE_OF_RIM], y, new, law)
+    if not (stops or rests or new[6] > end):
+        return 1.0, NOWHERE
+    place, event = 1.0, NOWHERE
+    last = rates(new[0], new[1], new[2], new[3], new[4], law)
+    interpolate(y, new, last, h, law, K, F)
+    memory[EVALUATIONS] += 4.0
+    if new[6] > end:
+        place, event = (end - y[6]) / (new[6] - y[6]), AT_END
+        for _ in range(20):
+            reached, pace = component(F, place, 6)
+            change = (end - reached) / pace if pace > 0.0 else 0.0
+            place = min(max(place + change, 0.0), 1.0)
+            if abs(change) < 1e-15:
+                break
+    if stops:
+        share = crossing(SIDE_OF_STOP, memory[SIDE_OF_STOP], y, F, law)
+        if share < place:
+            place, event = share, SIDE_OF_STOP
+    if rests:
+        share = crossing(SIDE_OF_RIM, memory[SIDE_OF_RIM], y, F, law)
+        if share < place:
+            place, event = share, SIDE_OF_RIM
+    return place, event
+
+
+@part
+def slide(
+    y: Unknowns, memory: FloatArray, tolerance: float, end: float, most_work: float, times: FloatArray, out: FloatArray,
+    law: Law, K: FloatArray, F: FloatArray,
+) -> Unknowns:  # fmt: skip
+    """Take explicit steps until slip ends or is stiff, or the work of this call is done."""
+    f = rates(y[0], y[1], y[2], y[3], y[4], law)
+    while True:
+        h, most, event = memory[STEP], 10.0, NOWHERE
+        usual = h
+        while True:
+            new, third, fifth = take(y, f, h, law, K)
+            memory[WORK] += 1.0
+            memory[EVALUATIONS] += 11.0
+            if event != NOWHERE:
+                break
+            error = h * error_of(y, new, third, fifth, tolerance, law)
+            if new[2] * y[2] + new[3] * y[3] + new[4] * y[4] < 0.0 and speed_of(y) < SLOW:
+                error = max(error, TURNED_BACK)
+            if not error <= 1.0:
+                h *= factor_of(error)
+                most = 1.0
+                if h < LEAST_STEP:
+                    memory[STATUS] = FAILS
+                    return y
+                continue
+            usual = h * min(most, factor_of(error))
+            place, event = first_event(y, new, h, end, memory, law, K, F)
+            if event == NOWHERE:
+                break
+            h *= place
+        last = rates(new[0], new[1], new[2], new[3], new[4], law)
+        memory[EVALUATIONS] += 1.0
+        if event == AT_END:
+            late = (end - new[6]) / last[6]
+            new = (
+                new[0] + late * last[0], new[1] + late * last[1], new[2] + late * last[2], new[3] + late * last[3],
+                new[4] + late * last[4], new[5] + late * last[5], end,
+            )  # fmt: skip
+        elif event != NOWHERE:
+            memory[event] = -memory[event]
+        if pending(memory, times, new[6]):
+            interpolate(y, new, last, h, law, K, F)
+            memory[EVALUATIONS] += 4.0
+            if is_accurate(h, F, tolerance, law):
+                record_step(y, new, F, memory, times, out)
+            else:
+                record_by_steps(y, f, new, h, memory, times, out, law, K)
+        memory[STEP] = usual
+        memory[STEPS] += 1.0
+        change = math.sqrt((new[2] - y[2]) ** 2 + (new[3] - y[3]) ** 2 + (new[4] - y[4]) ** 2)
+        memory[SPAN] = new[6] - y[6]
+        short = memory[SPAN] + change / (speed_of(new) + 1e-300) < USUAL
+        memory[SHORT] = max(0.0, memory[SHORT] + (1.0 if short else -1.0))
+        y, f = new, last
+        if y[6] >= end or memory[WORK] >= most_work or slip_ends(y, f, memory, tolerance, law):
+            return y

@@ -1,0 +1,224 @@
+"""Slip by collocation: where it begins, and where slow slip makes explicit steps short."""
+
+import math
+
+import numpy as np
+
+from reference_model.core.collocation import at, error_of, series, solve
+from reference_model.core.explicit import Unknowns
+from reference_model.core.forces import Law, growth
+from reference_model.core.memory import (
+    EVALUATIONS,
+    FAILS,
+    PATIENCE,
+    SHORT,
+    SIDE_OF_RIM,
+    SIDE_OF_STOP,
+    SPAN,
+    STATUS,
+    STEP,
+    STEPS,
+    WORK,
+    carried,
+    pending,
+    put,
+    speed_of,
+)
+from reference_model.core.memory import RECORDED
+from reference_model.core.parts import part
+from reference_model.core.recording import record_series
+from reference_model.core.rest import begun, direction
+from reference_model.core.slip import creep_from
+from reference_model.core.surfaces import has_rim, has_stop, value_of
+from reference_model.numerics.collocation import NODES, POINTS
+from reference_model.systems import FloatArray
+
+FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12
+"""First step from rest, which shrinks until the motion is resolved, and the smallest."""
+
+BRIEF = 1e-5
+"""Longest slip from rest in closed form; its relative error is of this order."""
+
+COST = 4.0
+"""Work of a step of collocation relative to an explicit one, where it replaces several."""
+
+WORK_OF_STEP = 50.0
+"""Its work in explicit steps, for the length of a call."""
+
+RISING = 10.0
+"""Rate of relaxation times the step below which an explicit method is as efficient."""
+
+MOST_STEPS = 100
+"""Largest number of steps until another description of slip is tried."""
+
+FIRST_STEP = 0.1
+"""First explicit step in stretched time after slip from rest."""
+
+
+@part
+def five(y: Unknowns) -> FloatArray:
+    """Return x, y, ux, uy and r, shape (5,)."""
+    result = np.empty(5)
+    for v in range(5):
+        result[v] = y[v]
+    return result
+
+
+@part
+def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
+    """Return the extrapolation of a step of length ``before`` to the nodes of the next one, shape (NODES, 5)."""
+    guess = np.empty((NODES, 5))
+    for i in range(NODES):
+        guess[i] = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)[:5]
+    return guess
+
+
+@part
+def crossed_any(y: Unknowns, memory: FloatArray, law: Law) -> bool:
+    """Return whether a surface was crossed, and remember the new side."""
+    result = False
+    if has_stop(law) and memory[SIDE_OF_STOP] * value_of(SIDE_OF_STOP, y, law) < 0.0:
+        memory[SIDE_OF_STOP] = -memory[SIDE_OF_STOP]
+        result = True
+    if has_rim(law) and memory[SIDE_OF_RIM] * value_of(SIDE_OF_RIM, y, law) < 0.0:
+        memory[SIDE_OF_RIM] = -memory[SIDE_OF_RIM]
+        result = True
+    return result
+
+
+@part
+def slip_stiffly(
+    y: Unknowns, memory: FloatArray, tolerance: float, end: float, times: FloatArray, out: FloatArray, law: Law
+) -> Unknowns:
+    """Take steps by collocation while they pay."""
+    first_speed, explicit = speed_of(y), memory[SPAN]
+    h, known, coefficients = 4.0 * explicit, False, np.zeros((NODES + 1, 6))
+    before = h
+    memory[SHORT] = 0.0
+    for _ in range(MOST_STEPS):
+        if y[6] >= end:
+            break
+        start = five(y)
+        h = min(h, end - y[6])
+        if known:
+            guess = ahead(coefficients, h, before)
+        else:
+            guess = np.empty((NODES, 5))
+            for i in range(NODES):
+                place = 0.5 * h * (POINTS[i] + 1.0)
+                guess[i] = start
+                guess[i, 0] += place * (y[2] - law.omega * y[1])
+                guess[i, 1] += place * (y[3] + law.omega * y[0])
+        memory[WORK] += WORK_OF_STEP
+        memory[EVALUATIONS] += 40.0
+        solved, values = solve(start, h, guess, law)
+        error, found = math.inf, coefficients
+        if solved:
+            found = series(start, y[5], h, values, law)
+            error = error_of(found, tolerance)
+        if not error <= 1.0:
+            h *= max(0.1, 0.8 * error**-0.125) if solved else 0.3
+            if h < explicit:
+                memory[PATIENCE] *= 2.0
+                return y
+            continue
+        memory[STEPS] += 1.0
+        coefficients, known, before = found, True, h
+        new = at(coefficients, 1.0)
+        until = y[6] + h if h < end - y[6] else end
+        record_series(y[6], h, until, coefficients, memory, times, out)
+        y = (new[0], new[1], new[2], new[3], new[4], new[5], until)
+        s = speed_of(y)
+        if crossed_any(y, memory, law):
+            return y
+        a = growth(y[0], y[1], y[2], y[3], y[4], law)
+        fall = -(a[0] * y[2] + a[1] * y[3] + a[2] * y[4]) / s
+        h *= min(2.0, 0.8 * max(error, 1e-16) ** -0.125)
+        if s > law.friction or (fall > 0.0 and s < fall * h) or creep_from(y, tolerance, law)[0] > 0.0:
+            return y
+        if h < COST * explicit * s / first_speed:
+            memory[PATIENCE] *= 2.0
+            return y
+    return y
+
+
+@part
+def begin_slip(
+    y: Unknowns, memory: FloatArray, tolerance: float, end: float, times: FloatArray, out: FloatArray, law: Law
+) -> Unknowns:
+    """Follow slip from rest until an explicit method can continue."""
+    n = direction(y[0], y[1], law)
+    first, gain, tx, ty, tr = begun(y[0], y[1], n, law)
+    if first > 0.0 > gain and -2.0 * first / gain < BRIEF:
+        return slip_briefly(y, n, first, gain, memory, end, times, out, law)
+    h, start = FIRST_SPAN, five(y)
+    known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
+    memory[STEP], memory[SHORT] = FIRST_STEP, 0.0
+    for _ in range(MOST_STEPS):
+        if y[6] >= end:
+            break
+        if known:
+            guess = ahead(coefficients, h, before)
+        else:
+            guess = np.empty((NODES, 5))
+            for i in range(NODES):
+                place = 0.5 * h * (POINTS[i] + 1.0)
+                s = (first + 0.5 * gain * place) * place
+                guess[i, 0] = start[0] - place * law.omega * start[1]
+                guess[i, 1] = start[1] + place * law.omega * start[0]
+                guess[i, 2] = s * (n[0] + place * tx)
+                guess[i, 3] = s * (n[1] + place * ty)
+                guess[i, 4] = s * (n[2] + place * tr)
+        memory[WORK] += WORK_OF_STEP
+        memory[EVALUATIONS] += 40.0
+        solved, values = solve(start, h, guess, law)
+        error, found = math.inf, coefficients
+        if solved:
+            found = series(start, y[5], h, values, law)
+            error = error_of(found, 0.1 * tolerance)
+        if not error <= 1.0:
+            h *= max(0.25, 0.8 * error**-0.125) if solved else 0.25
+            if h < LEAST_SPAN:
+                memory[STATUS] = FAILS
+                break
+            continue
+        memory[STEPS] += 1.0
+        coefficients, known, before = found, True, h
+        until = min(y[6] + h, end)
+        new = at(coefficients, (until - y[6]) / h)
+        record_series(y[6], h, until, coefficients, memory, times, out)
+        y = (new[0], new[1], new[2], new[3], new[4], new[5], until)
+        start = five(y)
+        a = growth(y[0], y[1], y[2], y[3], y[4], law)
+        falling = a[0] * y[2] + a[1] * y[3] + a[2] * y[4] <= 0.0
+        if falling or law.friction * h < RISING * speed_of(y):
+            break
+        h *= min(4.0, 0.8 * max(error, 1e-16) ** -0.125)
+    return y
+
+
+@part
+def slip_briefly(
+    y: Unknowns, n: tuple[float, float, float], first: float, gain: float, memory: FloatArray, end: float,
+    times: FloatArray, out: FloatArray, law: Law,
+) -> Unknowns:  # fmt: skip
+    """Follow slip s = first·t + ½·gain·t² along ``n`` to its end, where the body rests again."""
+    last = -2.0 * first / gain
+    moved = (y[0], y[1], n[0], n[1], n[2], y[5], y[6])
+    until = min(y[6] + last, end)
+    while pending(memory, times, until):
+        put(out[int(memory[RECORDED])], briefly(moved, times[int(memory[RECORDED])] - y[6], first, gain, law))
+        memory[RECORDED] += 1.0
+    memory[WORK] += 1.0
+    memory[STEPS] += 1.0
+    reached = briefly(moved, until - y[6], first, gain, law)
+    if y[6] + last <= end:
+        return (reached[0], reached[1], 0.0, 0.0, 0.0, reached[5], until)
+    return (reached[0], reached[1], reached[2], reached[3], reached[4], reached[5], until)
+
+
+@part
+def briefly(moved: Unknowns, delay: float, first: float, gain: float, law: Law) -> Unknowns:
+    """Return the unknowns after ``delay`` of slip in the direction that takes the place of slip in ``moved``."""
+    way = (0.5 * first + gain * delay / 6.0) * delay * delay
+    return carried(moved, delay, way, (first + 0.5 * gain * delay) * delay, law)
