@@ -1,53 +1,16 @@
 """Forces on a pin or a disc relative to the master disc, in scaled units.
 
-The unknowns are x, y, the slip velocity (ux, uy) of the centre and r = κ(φ̇ − ω) with the radius of gyration κ. A pin
+The unknowns are x, y, the slip velocity (vx, vy) of the centre or of a contact point, and r = κ(φ̇ − ω) with the radius of gyration κ. A pin
 is a disc without a radius, so its r stays zero.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
 
 from reference_model.core.contact import shares
+from reference_model.core.law import CENTRE, Law
 from reference_model.core.parts import inlined, part
-from reference_model.systems import FloatArray
-
-
-class Law(NamedTuple):
-    """Scaled parameters of a motion, with forces divided by the mass.
-
-    ``hold`` is the friction that can hold the centre at rest, negative if friction cannot hold the shaft's moment.
-    ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.contact.shares`. ``shaft`` is
-    b/J, ``lag`` κ(ω − Ω), and ``gyration`` κ. ``stretch`` is s₀ of the stretched time.
-    """
-
-    damping: float
-    stiffness: float
-    offset: float
-    hardening: float
-    gap: float
-    stop: float
-    friction: float
-    hold: float
-    omega: float
-    outer: float
-    inner: float
-    load: float
-    shaft: float
-    lag: float
-    gyration: float
-    stretch: float
-
-
-def _unpacked() -> Callable[[FloatArray], Law]:
-    namespace: dict[str, Any] = {"Law": Law}
-    arguments = ", ".join(f"parameters[{i}]" for i in range(len(Law._fields)))
-    exec(f"def unpacked(parameters):\n    return Law({arguments})", namespace)
-    return part(namespace["unpacked"])
-
-
-unpacked = _unpacked()
-"""Return the law with the parameters in an array: numba takes 0.3 ms to pass a named tuple from Python."""
+from reference_model.core.pivot import turning
+from reference_model.core.points import centre_slip, friction_of_points, of_point
 
 
 @part
@@ -80,33 +43,47 @@ def pull(x: float, y: float, ux: float, uy: float, law: Law) -> tuple[float, flo
 
 
 @inlined
-def friction(ux: float, uy: float, r: float, law: Law) -> tuple[float, float, float]:
-    """Return the acceleration by friction of ux, uy and r."""
-    slip = math.sqrt(ux * ux + uy * uy)
+def friction(
+    vx: float, vy: float, r: float, angle: float, law: Law
+) -> tuple[float, float, float, float]:
+    """Return the acceleration by friction of the centre and of r, and the rate at which it turns slip."""
+    if len(law.around) > 0:
+        return friction_of_points(vx, vy, r, angle, law)
+    slip = math.sqrt(vx * vx + vy * vy)
+    s = math.sqrt(slip * slip + r * r)
+    rate = law.friction / s if s > 0.0 else 0.0
     if law.outer == 0.0:
         over = law.friction / slip if slip > 0.0 else 0.0
-        return -over * ux, -over * uy, 0.0
+        return -over * vx, -over * vy, 0.0, rate
     force, moment = shares(slip, abs(r), law.outer, law.inner, law.load)
     over = law.friction * force / slip if slip > 0.0 else 0.0
-    return -over * ux, -over * uy, -law.friction * math.copysign(moment, r)
+    return -over * vx, -over * vy, -law.friction * math.copysign(moment, r), rate
 
 
 @inlined
-def growth(x: float, y: float, ux: float, uy: float, r: float, law: Law) -> tuple[float, float, float]:
-    """Return the rates of ux, uy and r."""
+def growth(
+    x: float, y: float, vx: float, vy: float, r: float, angle: float, law: Law
+) -> tuple[float, float, float, float]:
+    """Return the rates of vx, vy and r, and the rate at which friction turns slip."""
+    ux, uy = centre_slip(vx, vy, r, angle, law)
     ax, ay = pull(x, y, ux, uy, law)
-    fx, fy, fr = friction(ux, uy, r, law)
-    return ax + fx, ay + fy, fr - law.shaft * (r + law.lag)
+    if law.sense != 0.0:
+        return 0.0, 0.0, turning(ax, ay, r, angle, law)[0], 0.0
+    fx, fy, fr, rate = friction(vx, vy, r, angle, law)
+    ax, ay, ar = ax + fx, ay + fy, fr - law.shaft * (r + law.lag)
+    if law.point != CENTRE:
+        ax, ay = of_point(ax, ay, ar, r, angle, law)
+    return ax, ay, ar, rate
 
 
 @inlined
 def rates(
-    x: float, y: float, ux: float, uy: float, r: float, law: Law
+    x: float, y: float, vx: float, vy: float, r: float, angle: float, law: Law
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return the rates of x, y, ux, uy, r, the angle and the time in stretched time dτ = dt·(s + s₀)/s."""
-    ax, ay, ar = growth(x, y, ux, uy, r, law)
-    s = math.sqrt(ux * ux + uy * uy + r * r)
-    pace = s / (s + law.stretch) if law.stretch > 0.0 else 1.0
+    """Return the rates of x, y, vx, vy, r, the angle and the time in stretched time dτ = dt·(1 + ½·rate)."""
+    ax, ay, ar, rate = growth(x, y, vx, vy, r, angle, law)
+    ux, uy = centre_slip(vx, vy, r, angle, law)
+    pace = 1.0 / (1.0 + 0.5 * rate)
     return (
         pace * (ux - law.omega * y),
         pace * (uy + law.omega * x),
