@@ -28,12 +28,23 @@ NOISE = 10.0
 """Change, in these units, that may be noise if it hardly falls."""
 
 
+ROUNDING = 1e-14
+"""Rounding error of the last terms of a series relative to its values."""
+
+
 @part
 def rates_at(values: FloatArray, law: Law) -> FloatArray:
     """Return the rates of x, y, the slip, r and the angle in time at the nodes, shape (NODES, 6)."""
     result = np.empty((NODES, 6))
     for i in range(NODES):
-        x, y, vx, vy, r, angle = values[i, 0], values[i, 1], values[i, 2], values[i, 3], values[i, 4], values[i, 5]
+        x, y, vx, vy, r, angle = (
+            values[i, 0],
+            values[i, 1],
+            values[i, 2],
+            values[i, 3],
+            values[i, 4],
+            values[i, 5],
+        )
         ux, uy = centre_slip(vx, vy, r, angle, law)
         ax, ay, ar, _ = growth(x, y, vx, vy, r, angle, law)
         result[i, 0] = ux - law.omega * y
@@ -62,7 +73,11 @@ def friction_derivatives(vx: float, vy: float, r: float, angle: float, law: Law)
     for j in range(2 if law.outer == 0.0 else 3):
         h = DIFFERENCE
         moved = friction(
-            n[0] + (h if j == 0 else 0.0), n[1] + (h if j == 1 else 0.0), n[2] + (h if j == 2 else 0.0), angle, law
+            n[0] + (h if j == 0 else 0.0),
+            n[1] + (h if j == 1 else 0.0),
+            n[2] + (h if j == 2 else 0.0),
+            angle,
+            law,
         )
         for i in range(3):
             result[i, j] = (moved[i] - at[i]) / (h * s)
@@ -264,6 +279,8 @@ def error_of(coefficients: FloatArray, tolerance: float, law: Law) -> float:
     s = math.sqrt(s)
     error = 0.0
     for v in range(6 if len(law.around) > 0 else 5):
-        scale = min(tolerance, 0.03 * s) if 2 <= v < slip else tolerance * (1.0 + abs(end[v]) if v < 5 else 1.0)
+        scale = tolerance * (1.0 + abs(end[v]) if v < 5 else 1.0) + ROUNDING * abs(end[v])
+        if 2 <= v < slip:
+            scale = min(tolerance, 0.03 * s)
         error = max(error, abs(coefficients[NODES, v]) / scale, 0.1 * abs(coefficients[NODES - 1, v]) / scale)
     return error

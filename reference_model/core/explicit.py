@@ -78,7 +78,9 @@ def shares_of(y: Unknowns, law: Law) -> tuple[float, float]:
 
 
 @part
-def error_of(old: Unknowns, new: Unknowns, third: Unknowns, fifth: Unknowns, tolerance: float, law: Law) -> float:
+def error_of(
+    old: Unknowns, new: Unknowns, third: Unknowns, fifth: Unknowns, tolerance: float, law: Law
+) -> float:
     """Return Hairer's estimate of the error per step in tolerances.
 
     The error of small slip counts relative to slip, because its direction decides where slip ends.
@@ -111,7 +113,9 @@ def factor_of(error: float) -> float:
 
 
 @part
-def interpolate(y: Unknowns, new: Unknowns, last: Unknowns, h: float, law: Law, K: FloatArray, F: FloatArray) -> None:
+def interpolate(
+    y: Unknowns, new: Unknowns, last: Unknowns, h: float, law: Law, K: FloatArray, F: FloatArray
+) -> None:
     """Write the interpolant of a step to ``F``, shape (TERMS + 1, SIZE), from the rates ``K`` and ``last``."""
     for v in range(SIZE):
         K[STAGES, v] = last[v]

@@ -43,9 +43,7 @@ def pull(x: float, y: float, ux: float, uy: float, law: Law) -> tuple[float, flo
 
 
 @inlined
-def friction(
-    vx: float, vy: float, r: float, angle: float, law: Law
-) -> tuple[float, float, float, float]:
+def friction(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple[float, float, float, float]:
     """Return the acceleration by friction of the centre and of r, and the rate at which it turns slip."""
     if len(law.around) > 0:
         return friction_of_points(vx, vy, r, angle, law)

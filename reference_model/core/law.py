@@ -12,6 +12,7 @@ CENTRE = -1
 WIDTH = 7
 """Number of values per contact point."""
 
+
 class Law(NamedTuple):
     """Scaled parameters, with forces divided by the mass.
 

@@ -13,7 +13,9 @@ from reference_model.core.parts import part
 
 
 @part
-def turning(ax: float, ay: float, r: float, angle: float, law: Law) -> tuple[float, float, float, float, float]:
+def turning(
+    ax: float, ay: float, r: float, angle: float, law: Law
+) -> tuple[float, float, float, float, float]:
     """Return the rate of r, and B and G⁻¹B for the acceleration of the centre by everything but friction."""
     c, s = math.cos(angle), math.sin(angle)
     x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y

@@ -1,8 +1,7 @@
 """Friction of contact points, which turn with the disc, and the point that comes to rest first.
 
 The velocity of point j is v_j = v + i·r·(η_j − η)·exp(iφ), with the velocity v of the point at η. Friction, −g·q_j
-along v_j, turns this velocity fast if it is small. The rate of relaxation is minus the trace of the derivatives of
-friction by v and r.
+along v_j, turns this velocity fast if it is small, at rates of about g/|v_j|. Their mean, weighted by the load, stretches time.
 """
 
 import math
@@ -23,7 +22,7 @@ NONE = 1e-300
 def friction_of_points(
     vx: float, vy: float, r: float, angle: float, law: Law
 ) -> tuple[float, float, float, float]:
-    """Return the acceleration by friction of the centre and of r, and the rate of relaxation."""
+    """Return the acceleration by friction of the centre and of r, and the mean rate at which it turns slip."""
     c, s = math.cos(angle), math.sin(angle)
     wx, wy = c * vx + s * vy, c * vy - s * vx
     fx = fy = moment = rate = 0.0
@@ -33,11 +32,10 @@ def friction_of_points(
         px, py = wx - r * (y - law.arm_y), wy + r * (x - law.arm_x)
         inverse = 1.0 / max(math.sqrt(px * px + py * py), NONE)
         px, py = px * inverse, py * inverse
-        along = x * px + y * py
         fx -= share * px
         fy -= share * py
         moment -= share * (x * py - y * px)
-        rate += share * inverse * (1.0 + along * along)
+        rate += share * inverse
     g = law.friction
     return g * (c * fx - s * fy), g * (s * fx + c * fy), g * moment, g * rate
 
@@ -102,9 +100,7 @@ def centre_slip(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple
 
 
 @part
-def of_point(
-    ax: float, ay: float, ar: float, r: float, angle: float, law: Law
-) -> tuple[float, float]:
+def of_point(ax: float, ay: float, ar: float, r: float, angle: float, law: Law) -> tuple[float, float]:
     """Return the rate of the slip of the point that ``law`` follows, for those of the centre and of r."""
     c, s = math.cos(angle), math.sin(angle)
     x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y

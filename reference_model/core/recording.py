@@ -35,7 +35,13 @@ def is_accurate(h: float, F: FloatArray, tolerance: float, law: Law) -> bool:
 
 @part
 def record_step(
-    y: Unknowns, new: Unknowns, F: FloatArray, memory: FloatArray, times: FloatArray, out: FloatArray, law: Law
+    y: Unknowns,
+    new: Unknowns,
+    F: FloatArray,
+    memory: FloatArray,
+    times: FloatArray,
+    out: FloatArray,
+    law: Law,
 ) -> None:
     """Record times within an explicit step by its interpolant."""
     while pending(memory, times, new[6]):
@@ -80,13 +86,21 @@ def record_by_steps(
 
 @part
 def record_series(
-    t: float, h: float, end: float, coefficients: FloatArray, memory: FloatArray, times: FloatArray, out: FloatArray,
+    t: float,
+    h: float,
+    end: float,
+    coefficients: FloatArray,
+    memory: FloatArray,
+    times: FloatArray,
+    out: FloatArray,
     law: Law,
 ) -> None:
     """Record times within a step of collocation that begins at ``t``."""
     while pending(memory, times, end):
         found = at(coefficients, (times[int(memory[RECORDED])] - t) / h)
-        put(out[int(memory[RECORDED])], (found[0], found[1], found[2], found[3], found[4], found[5], 0.0), law)
+        put(
+            out[int(memory[RECORDED])], (found[0], found[1], found[2], found[3], found[4], found[5], 0.0), law
+        )
         memory[RECORDED] += 1.0
 
 

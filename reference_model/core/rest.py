@@ -208,9 +208,7 @@ def drift(y: Unknowns, law: Law) -> tuple[float, float, float, float]:
 
 
 @part
-def begun(
-    y: Unknowns, n: tuple[float, float, float], law: Law
-) -> tuple[float, float, float, float, float]:
+def begun(y: Unknowns, n: tuple[float, float, float], law: Law) -> tuple[float, float, float, float, float]:
     """Return the growth of slip from rest to leading order: s = first·t + ½·gain·t² along n + turning·t.
 
     The last three results are the components of turning.

@@ -48,6 +48,12 @@ METHOD = "compiled DOP853 in stretched time, Radau IIA where it is stiff; closed
 LOCAL, LEAST = 0.05, 3e-14
 """Tolerance of a step as a share of the motion's, and its smallest value."""
 
+SUM, DENSITY = 10.0, 5.0
+"""Largest sum of the errors of steps in tolerances, and number of steps per unit of time.
+
+Errors add up over the run, or over the time in which the dampers let them decay.
+"""
+
 SLOW_SPRINGS = 0.1
 """Scaled natural frequency below which steps become more accurate: position errors are velocity errors over it."""
 
@@ -169,7 +175,11 @@ def simulate_by(
     state = np.zeros(7)
     state[columns] = frame.unknowns(start)
     scaled = (moments - moments[0]) / unit.time
-    local = max(tolerance * LOCAL * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
+    lasting = float(scaled[-1])
+    if system.damping > 0.0:
+        lasting = min(lasting, 2.0 * system.mass / (system.damping * unit.time))
+    share = min(LOCAL, SUM / (DENSITY * lasting)) if lasting > 0.0 else LOCAL
+    local = max(tolerance * share * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
     out, memory, phases = np.zeros((len(moments), 6)), np.zeros(SLOTS), np.zeros((64, 8))
     memory[PATIENCE], memory[STEP], memory[RECORDED] = FEW, FIRST_STEP, 1.0
     end, count = float(scaled[-1]), StepCount(float(scaled[-1]))
@@ -194,5 +204,7 @@ def simulate_by(
         (KINDS[int(row[0])], float(moments[0] + row[1] * unit.time), frame.states(row[2:][columns]))
         for row in phases[: int(memory[PHASES])]
     ]
-    solution = Solution(METHOD, tolerance, int(memory[EVALUATIONS]), int(memory[STEPS]), time.perf_counter() - clock)
+    solution = Solution(
+        METHOD, tolerance, int(memory[EVALUATIONS]), int(memory[STEPS]), time.perf_counter() - clock
+    )
     return Trajectory(system, moments, states, phases_of(begun, float(moments[-1])), solution)

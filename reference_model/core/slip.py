@@ -125,7 +125,14 @@ def point_for(y: Unknowns, law: Law) -> int:
 
 @part
 def first_event(
-    y: Unknowns, new: Unknowns, h: float, end: float, memory: FloatArray, law: Law, K: FloatArray, F: FloatArray
+    y: Unknowns,
+    new: Unknowns,
+    h: float,
+    end: float,
+    memory: FloatArray,
+    law: Law,
+    K: FloatArray,
+    F: FloatArray,
 ) -> tuple[float, int]:
     """Return the share of a step up to the first crossing of a surface or the end of the run, and which it is."""
     reached = new[6] > end
@@ -208,5 +215,10 @@ def slide(
         short = memory[SPAN] + speed_of(apart, law) / (speed_of(new, law) + 1e-300) < USUAL
         memory[SHORT] = max(0.0, memory[SHORT] + (1.0 if short and law.sense == 0.0 else -1.0))
         y, f = new, last
-        if y[6] >= end or memory[WORK] >= most_work or event > SIDE_OF_RIM or slip_ends(y, f, memory, tolerance, law):
+        if (
+            y[6] >= end
+            or memory[WORK] >= most_work
+            or event > SIDE_OF_RIM
+            or slip_ends(y, f, memory, tolerance, law)
+        ):
             return y

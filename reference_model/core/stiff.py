@@ -91,7 +91,13 @@ def crossed_any(y: Unknowns, memory: FloatArray, law: Law) -> bool:
 
 @part
 def slip_stiffly(
-    y: Unknowns, memory: FloatArray, tolerance: float, end: float, times: FloatArray, out: FloatArray, law: Law
+    y: Unknowns,
+    memory: FloatArray,
+    tolerance: float,
+    end: float,
+    times: FloatArray,
+    out: FloatArray,
+    law: Law,
 ) -> Unknowns:
     """Take steps by collocation while they pay."""
     first_speed, explicit = speed_of(y, law), memory[SPAN]
@@ -139,7 +145,12 @@ def slip_stiffly(
         a = growth(y[0], y[1], y[2], y[3], y[4], y[5], law)
         fall = -along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) / s
         h *= min(2.0, 0.8 * max(error, 1e-16) ** -0.125)
-        if a[3] < 1.0 or point_for(y, law) != law.point or (fall > 0.0 and s < fall * h) or creep_from(y, tolerance, law)[0] > 0.0:
+        if (
+            a[3] < 1.0
+            or point_for(y, law) != law.point
+            or (fall > 0.0 and s < fall * h)
+            or creep_from(y, tolerance, law)[0] > 0.0
+        ):
             return y
         if h < COST * explicit * s / first_speed:
             memory[PATIENCE] *= 2.0
@@ -161,6 +172,8 @@ def begin_slip(
         return y
     x_drift, y_drift, r_drift, turn = drift(y, law)
     h, start = FIRST_SPAN, six(y)
+    if first > 0.0 > gain:  # a step beyond the return to rest would find slip in the opposite direction
+        h = min(h, -0.5 * first / gain)
     known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
     for _ in range(MOST_STEPS):
         if y[6] >= end:
@@ -224,7 +237,11 @@ def slip_briefly(
     moved = (y[0], y[1], ux, uy, n[2], y[5], y[6])
     until = min(y[6] + last, end)
     while pending(memory, times, until):
-        put(out[int(memory[RECORDED])], briefly(moved, times[int(memory[RECORDED])] - y[6], first, gain, law), law)
+        put(
+            out[int(memory[RECORDED])],
+            briefly(moved, times[int(memory[RECORDED])] - y[6], first, gain, law),
+            law,
+        )
         memory[RECORDED] += 1.0
     memory[WORK] += 1.0
     memory[STEPS] += 1.0
