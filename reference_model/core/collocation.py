@@ -12,7 +12,7 @@ import numpy as np
 from reference_model.core.forces import friction, growth, secant, tangent
 from reference_model.core.law import CENTRE, Law
 from reference_model.core.parts import part
-from reference_model.core.points import centre_slip, turning_of_friction
+from reference_model.core.points import turning_of_friction
 from reference_model.numerics.collocation import FROM_START, INTEGRAL, NODES, POINTS
 from reference_model.systems import FloatArray
 
@@ -45,8 +45,7 @@ def rates_at(values: FloatArray, law: Law) -> FloatArray:
             values[i, 4],
             values[i, 5],
         )
-        ux, uy = centre_slip(vx, vy, r, angle, law)
-        ax, ay, ar, _ = growth(x, y, vx, vy, r, angle, law)
+        ax, ay, ar, _, ux, uy = growth(x, y, vx, vy, r, angle, law)
         result[i, 0] = ux - law.omega * y
         result[i, 1] = uy + law.omega * x
         result[i, 2] = ax

@@ -44,44 +44,49 @@ def pull(x: float, y: float, ux: float, uy: float, law: Law) -> tuple[float, flo
 
 @inlined
 def friction(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple[float, float, float, float]:
-    """Return the acceleration by friction of the centre and of r, and the rate at which it turns slip."""
+    """Return the acceleration by friction of the centre and of r, and the pace dt/dτ of stretched time."""
     if len(law.around) > 0:
         return friction_of_points(vx, vy, r, angle, law)
     slip = math.sqrt(vx * vx + vy * vy)
-    s = math.sqrt(slip * slip + r * r)
-    rate = law.friction / s if s > 0.0 else 0.0
     if law.outer == 0.0:
         over = law.friction / slip if slip > 0.0 else 0.0
-        return -over * vx, -over * vy, 0.0, rate
+        return -over * vx, -over * vy, 0.0, slip / (slip + law.stretch) if law.stretch > 0.0 else 1.0
+    s = math.sqrt(slip * slip + r * r)
     force, moment = shares(slip, abs(r), law.outer, law.inner, law.load)
     over = law.friction * force / slip if slip > 0.0 else 0.0
-    return -over * vx, -over * vy, -law.friction * math.copysign(moment, r), rate
+    return (
+        -over * vx, -over * vy, -law.friction * math.copysign(moment, r),
+        s / (s + law.stretch) if law.stretch > 0.0 else 1.0,
+    )  # fmt: skip
 
 
 @inlined
 def growth(
     x: float, y: float, vx: float, vy: float, r: float, angle: float, law: Law
-) -> tuple[float, float, float, float]:
-    """Return the rates of vx, vy and r, and the rate at which friction turns slip."""
-    ux, uy = centre_slip(vx, vy, r, angle, law)
+) -> tuple[float, float, float, float, float, float]:
+    """Return the rates of vx, vy and r, the pace of stretched time, and the slip of the centre."""
+    ux, uy = vx, vy
+    if law.point != CENTRE:
+        ux, uy = centre_slip(vx, vy, r, angle, law)
     ax, ay = pull(x, y, ux, uy, law)
     if law.sense != 0.0:
-        return 0.0, 0.0, turning(ax, ay, r, angle, law)[0], 0.0
-    fx, fy, fr, rate = friction(vx, vy, r, angle, law)
+        return 0.0, 0.0, turning(ax, ay, r, angle, law)[0], 1.0, ux, uy
+    fx, fy, fr, pace = friction(vx, vy, r, angle, law)
     ax, ay, ar = ax + fx, ay + fy, fr - law.shaft * (r + law.lag)
     if law.point != CENTRE:
         ax, ay = of_point(ax, ay, ar, r, angle, law)
-    return ax, ay, ar, rate
+    return ax, ay, ar, pace, ux, uy
 
 
 @inlined
 def rates(
     x: float, y: float, vx: float, vy: float, r: float, angle: float, law: Law
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return the rates of x, y, vx, vy, r, the angle and the time in stretched time dτ = dt·(1 + ½·rate)."""
-    ax, ay, ar, rate = growth(x, y, vx, vy, r, angle, law)
-    ux, uy = centre_slip(vx, vy, r, angle, law)
-    pace = 1.0 / (1.0 + 0.5 * rate)
+    """Return the rates of x, y, vx, vy, r, the angle and the time in stretched time.
+
+    Time is stretched by half the rate of g over the slip speed, a mean over contact points, so dτ = dt·(1 + ½g/s).
+    """
+    ax, ay, ar, pace, ux, uy = growth(x, y, vx, vy, r, angle, law)
     return (
         pace * (ux - law.omega * y),
         pace * (uy + law.omega * x),

@@ -22,7 +22,7 @@ NONE = 1e-300
 def friction_of_points(
     vx: float, vy: float, r: float, angle: float, law: Law
 ) -> tuple[float, float, float, float]:
-    """Return the acceleration by friction of the centre and of r, and the mean rate at which it turns slip."""
+    """Return the acceleration by friction of the centre and of r, and the pace of stretched time."""
     c, s = math.cos(angle), math.sin(angle)
     wx, wy = c * vx + s * vy, c * vy - s * vx
     fx = fy = moment = rate = 0.0
@@ -37,7 +37,7 @@ def friction_of_points(
         moment -= share * (x * py - y * px)
         rate += share * inverse
     g = law.friction
-    return g * (c * fx - s * fy), g * (s * fx + c * fy), g * moment, g * rate
+    return g * (c * fx - s * fy), g * (s * fx + c * fy), g * moment, 1.0 / (1.0 + law.stretch * rate)
 
 
 @part

@@ -247,7 +247,7 @@ def begun(y: Unknowns, n: tuple[float, float, float], law: Law) -> tuple[float, 
 @part
 def _towards(
     y: Unknowns, n: tuple[float, float, float], delay: float, law: Law
-) -> tuple[float, float, float, float]:
+) -> tuple[float, float, float, float, float, float]:
     """Return the rates of the slip in the direction ``n`` after ``delay`` without slip."""
     x, z, r, angle = drift(y, law)
     r, angle = y[4] + delay * r, y[5] + delay * angle

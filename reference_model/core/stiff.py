@@ -48,6 +48,9 @@ COST = 4.0
 WORK_OF_STEP = 50.0
 """Its work in explicit steps, for the length of a call."""
 
+FAST = 2.0 / 3.0
+"""Pace of stretched time where slip is so fast that friction turns it at the rate 1."""
+
 RISING = 10.0
 """Rate of relaxation times the step below which an explicit method is as efficient."""
 
@@ -146,7 +149,7 @@ def slip_stiffly(
         fall = -along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) / s
         h *= min(2.0, 0.8 * max(error, 1e-16) ** -0.125)
         if (
-            a[3] < 1.0
+            a[3] > FAST
             or point_for(y, law) != law.point
             or (fall > 0.0 and s < fall * h)
             or creep_from(y, tolerance, law)[0] > 0.0
@@ -172,12 +175,13 @@ def begin_slip(
         return y
     x_drift, y_drift, r_drift, turn = drift(y, law)
     h, start = FIRST_SPAN, six(y)
-    if first > 0.0 > gain:  # a step beyond the return to rest would find slip in the opposite direction
-        h = min(h, -0.5 * first / gain)
+    # A step beyond the return to rest would find slip in the opposite direction, so the last step ends at the peak.
+    peak = y[6] - first / gain if first > 0.0 > gain else math.inf
     known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
     for _ in range(MOST_STEPS):
-        if y[6] >= end:
+        if y[6] >= min(end, peak):
             break
+        h = min(h, peak - y[6])
         if known:
             guess = ahead(coefficients, h, before)
         else:
@@ -213,7 +217,7 @@ def begin_slip(
         start = six(y)
         a = growth(y[0], y[1], y[2], y[3], y[4], y[5], law)
         falling = along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) <= 0.0
-        if falling or a[3] * h < RISING:
+        if falling or 2.0 * (1.0 - a[3]) * h < RISING * a[3]:
             break
         h *= min(4.0, 0.8 * max(error, 1e-16) ** -0.125)
     return y
