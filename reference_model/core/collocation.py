@@ -13,7 +13,7 @@ from reference_model.core.forces import friction, growth, secant, tangent
 from reference_model.core.law import CENTRE, Law
 from reference_model.core.parts import part
 from reference_model.core.points import turning_of_friction
-from reference_model.numerics.collocation import FROM_START, INTEGRAL, NODES, POINTS
+from reference_model.numerics.collocation import FROM_START, INTEGRAL, NODES
 from reference_model.systems import FloatArray
 
 DIFFERENCE = 1e-7
@@ -22,7 +22,7 @@ DIFFERENCE = 1e-7
 MOST_ITERATIONS = 14
 
 CONVERGED, NEAR = 1e-7, 1e-9
-"""Last change of Newton's method, relative in slip and absolute in x and y, after which the next is rounding error."""
+"""Last change in Newton's method, relative for slip and absolute for the rest, before the next is rounding error."""
 
 NOISE = 10.0
 """Change, in these units, that may be noise if it hardly falls."""
@@ -133,7 +133,7 @@ def jacobian_at(values: FloatArray, law: Law) -> FloatArray:
 
 @part
 def residual_of(values: FloatArray, start: FloatArray, h: float, n: int, law: Law) -> FloatArray:
-    """Return what the first ``n`` unknowns at the nodes lack, shape (NODES·n,)."""
+    """Return the residuals of the first ``n`` unknowns at the nodes, shape (NODES·n,)."""
     rates = rates_at(values, law)
     result = np.empty(NODES * n)
     for i in range(NODES):
@@ -165,7 +165,7 @@ def newton_matrix(values: FloatArray, h: float, n: int, law: Law) -> FloatArray:
 def solve_linear(matrix: FloatArray, right: FloatArray) -> None:
     """Replace ``right``, shape (n,), by the solution of a system; both are overwritten, and nan if it is singular.
 
-    By Gauss's elimination with pivots, because LAPACK's rounding differs between libraries.
+    This is Gauss's elimination with pivots, because rounding by LAPACK differs between libraries.
     """
     n = len(right)
     work = np.empty(n)
@@ -259,7 +259,7 @@ def series(start: FloatArray, h: float, values: FloatArray, law: Law) -> FloatAr
 def at(coefficients: FloatArray, place: float) -> FloatArray:
     """Return the unknowns at ``place``, the share of the step from its start, which may exceed 1."""
     z = 2.0 * place - 1.0
-    result = coefficients[0] + z * coefficients[1]
+    result: FloatArray = coefficients[0] + z * coefficients[1]
     before, now = 1.0, z
     for n in range(1, NODES):
         before, now = now, ((2 * n + 1) * z * now - n * before) / (n + 1)

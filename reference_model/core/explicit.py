@@ -109,7 +109,7 @@ def factor_of(error: float) -> float:
     """Return the factor for the next step, error^(−1/8) within bounds."""
     if not error < 1e300:
         return 0.2
-    return min(max(0.9 * max(error, 1e-30) ** -0.125, 0.2), 10.0)
+    return float(min(max(0.9 * max(error, 1e-30) ** -0.125, 0.2), 10.0))
 
 
 @part

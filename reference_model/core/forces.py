@@ -1,7 +1,7 @@
 """Forces on a pin or a disc relative to the master disc, in scaled units.
 
-The unknowns are x, y, the slip velocity (vx, vy) of the centre or of a contact point, and r = κ(φ̇ − ω) with the radius of gyration κ. A pin
-is a disc without a radius, so its r stays zero.
+The unknowns are x, y, the slip velocity (vx, vy) of the centre or of a contact point, and r = κ(φ̇ − ω) with the
+radius of gyration κ. A pin is a disc without a radius, so its r stays zero.
 """
 
 import math

@@ -18,10 +18,11 @@ class Law(NamedTuple):
 
     ``hold`` is the friction that can hold the centre at rest, negative if friction cannot hold the shaft's moment.
     ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.contact.shares`. ``shaft`` is
-    b/J, ``lag`` κ(ω − Ω), and ``gyration`` κ. ``stretch`` is s₀ of the stretched time. ``around`` contains for each contact point
-    its position η (x, y) in the frame of the disc, divided by κ, its share q of the load, the force (x, y) and the
-    moment of all points per unit of friction if the disc turns about it in the positive sense, and the distance to
-    its neighbour. It is empty for a pin and a ring.
+    b/J, ``lag`` κ(ω − Ω), and ``gyration`` κ. ``stretch`` is s₀ of the stretched time.
+
+    ``around`` contains seven numbers for each contact point: its position η (x, y) in the frame of the disc, divided
+    by κ; its share q of the load; the force (x, y) and the moment of all points per unit of friction if the disc
+    turns about it in the positive sense; the distance to its neighbour. It is empty for a pin and a ring.
 
     The unknown slip is that of the contact point ``point``, which lies at (``arm_x``, ``arm_y``) and carries
     ``share``, or of the centre. ``sense`` is ±1 if this point rests and the disc turns about it, otherwise 0.
@@ -68,7 +69,7 @@ SCALARS = 16
 """Number of fields before ``around``."""
 
 
-def _unpacked() -> Callable[[FloatArray, FloatArray], Law]:
+def _unpacked() -> Any:
     namespace: dict[str, Any] = {"Law": Law}
     arguments = ", ".join(f"parameters[{i}]" for i in range(SCALARS))
     exec(
@@ -78,5 +79,5 @@ def _unpacked() -> Callable[[FloatArray, FloatArray], Law]:
     return part(namespace["unpacked"])
 
 
-unpacked = _unpacked()
+unpacked: Callable[[FloatArray, FloatArray], Law] = _unpacked()
 """Return the law with the parameters in an array: numba takes 0.3 ms to pass a named tuple from Python."""

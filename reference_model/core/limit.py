@@ -38,6 +38,7 @@ AT_LIMIT = 1e-12
 
 @part
 def cost(ux: float, uy: float, fx: float, fy: float, law: Law) -> float:
+    """Return P(u, 1) − F·u."""
     total, around = -fx * ux - fy * uy, law.around
     for j in range(0, len(around), WIDTH):
         vx, vy = ux - around[j + 1], uy + around[j]
@@ -154,10 +155,10 @@ def pivot_from_rest(x: float, y: float, angle: float, law: Law) -> tuple[int, fl
 def direction_of_points(x: float, y: float, angle: float, law: Law) -> tuple[float, float, float]:
     """Return the unit vector of the slip that begins at rest: the direction n of fastest growth W·n.
 
-    W is the growth of slip along n. The growth is a quasi-concave function where it is positive, so Newton's method on
-    the sphere starts from a direction of positive growth: that of h, or that of a force that is too large.
+    W is the growth of slip along n. W·n is a quasi-concave function where it is positive, so Newton's method on the
+    sphere starts from a direction of positive growth: that of h, or that of a force that is too large.
     """
-    fx, fy, moment, sense = wrench(x, y, angle, law)
+    fx, fy, _, sense = wrench(x, y, angle, law)
     c, s = math.cos(angle), math.sin(angle)
     strength = math.sqrt(fx * fx + fy * fy)
     if strength < 1.0:
@@ -199,5 +200,6 @@ def direction_of_points(x: float, y: float, angle: float, law: Law) -> tuple[flo
 
 @part
 def grows(x: float, y: float, angle: float, n: FloatArray, law: Law) -> FloatArray:
+    """Return the growth of slip in the direction ``n``, shape (3,)."""
     a = growth(x, y, LEAST_SLIP * n[0], LEAST_SLIP * n[1], LEAST_SLIP * n[2], angle, law)
     return np.array((a[0], a[1], a[2]))

@@ -18,9 +18,9 @@ SLIPS, STICKS, PIVOTS = 1.0, 2.0, 3.0
 """Indices into the memory of a run, which continues from it in the next call.
 
 It contains the next explicit step, the time of the last one, the number of recent short steps and the number that
-calls for collocation, the signs of the
-surfaces, the contact point that the slip belongs to and the sense of a pivot, the kind of the current phase, the numbers of steps and evaluations,
-the work in explicit steps, the numbers of recorded times and phases, and whether the run goes on.
+calls for collocation, the signs of the surfaces, the contact point that the slip belongs to, the sense of a pivot,
+the kind of the current phase, the numbers of steps and evaluations, the work in explicit steps, the numbers of
+recorded times and phases, and whether the run continues.
 """
 
 RUNS, ENDS, FAILS, FULL = 0.0, 1.0, 2.0, 3.0
@@ -85,4 +85,4 @@ def enter(memory: FloatArray, phases: FloatArray, kind: float, y: Unknowns, law:
 @part
 def pending(memory: FloatArray, times: FloatArray, until: float) -> bool:
     """Return whether a requested time up to ``until`` is still to be recorded."""
-    return memory[RECORDED] < len(times) and times[int(memory[RECORDED])] <= until
+    return bool(memory[RECORDED] < len(times) and times[int(memory[RECORDED])] <= until)

@@ -1,9 +1,9 @@
 """A disc that turns about a resting contact point.
 
-With the arm η of this point, its friction λ divided by the mass changes its velocity at the rate B + Gλ, where B is
-the rate without it and G = 1 + (iη)⊗(iη). At rest λ = −G⁻¹B, up to g·q. Only r is unknown. All other points slip in
-directions that turn with the disc, so their friction is constant in the frame of the disc, and slip of one degree of
-freedom is not stiff.
+The friction λ of this point, divided by the mass, changes the velocity of the point at the rate B + Gλ. B is the rate
+without it and G = 1 + (iη)⊗(iη), with the arm η. At rest λ = −G⁻¹B, up to g·q. Only r is unknown. All other points
+slip in directions that turn with the disc, so their friction is constant in the frame of the disc, and slip of one
+degree of freedom is not stiff.
 """
 
 import math

@@ -1,7 +1,7 @@
 """Friction of contact points, which turn with the disc, and the point that comes to rest first.
 
 The velocity of point j is v_j = v + i·r·(η_j − η)·exp(iφ), with the velocity v of the point at η. Friction, −g·q_j
-along v_j, turns this velocity fast if it is small, at rates of about g/|v_j|. Their mean, weighted by the load, stretches time.
+along v_j, turns a small velocity fast, at rates of about g/|v_j|. Their mean, weighted by the load, stretches time.
 """
 
 import math

@@ -14,7 +14,7 @@ AS_GOOD = 20.0
 """Largest error of the interpolant, in tolerances of a step, within the requested tolerance."""
 
 NEAR = 1e-8
-"""Correction of Newton's method after which the next one is rounding error."""
+"""Last correction in Newton's method, before the next one is rounding error."""
 
 MOST_CORRECTIONS = 20
 

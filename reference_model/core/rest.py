@@ -132,7 +132,7 @@ def _first_release(x: float, y: float, angle: float, law: Law) -> float:
 def _last_grip(
     x: float, y: float, angle: float, firmly: float, firm: float, end: float, lacking: float, law: Law
 ) -> float:
-    """Return the last turn before ``end`` at which friction holds, by the Illinois method."""
+    """Return the last turn before ``end`` where friction holds, by the Illinois method."""
     if not firm > 0.0:
         return firmly
     low, high, side = firm, lacking, 0
@@ -263,8 +263,8 @@ def creep_of(y: Unknowns, law: Law, most: float) -> tuple[float, float, float, f
     """Return A, λ, B and Λ of slip s = A·exp(−λt) + B·exp(−Λt) that decays forever and is almost over.
 
     The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s, so to
-    first order in the distance s'' + b·s' + c·s = 0. A is zero if slip does not creep to rest within ``most``. ``law``
-    is that of the centre or of a pivot.
+    first order in the distance s'' + b·s' + c·s = 0. A is zero if slip does not creep to rest within ``most``. The
+    law is that of the centre or of a pivot.
     """
     none = (0.0, 0.0, 0.0, 0.0)
     s = speed_of(y, law)

@@ -14,7 +14,6 @@ from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Contact, Pin, Ring, contact_of
 from reference_model.contact.points import Points
 from reference_model.core.contact import shares
-from reference_model.core.points import around_of
 from reference_model.core.memory import (
     EVALUATIONS,
     FAILS,
@@ -29,6 +28,7 @@ from reference_model.core.memory import (
     STEPS,
 )
 from reference_model.core.parts import compiled
+from reference_model.core.points import around_of
 from reference_model.core.run import advance
 from reference_model.motion.frame import Frame
 from reference_model.motion.nondimensional import Units
@@ -51,7 +51,7 @@ LOCAL, LEAST = 0.05, 3e-14
 SUM, DENSITY = 10.0, 5.0
 """Largest sum of the errors of steps in tolerances, and number of steps per unit of time.
 
-Errors add up over the run, or over the time in which the dampers let them decay.
+Errors add up over the run, or over the decay time of the dampers.
 """
 
 SLOW_SPRINGS = 0.1
@@ -61,7 +61,7 @@ FIRST_STEP, FEW = 0.01, 15.0
 """First explicit step in stretched time, and number of short steps before collocation is tried."""
 
 MOST_WORK = 20_000.0
-"""Work of a call in explicit steps, below a second, after which Python can handle an interruption."""
+"""Work of a call in explicit steps. It takes less than a second, then Python can handle an interruption."""
 
 THINNEST = 1e-3
 """Smallest width of an annulus over its radius: a difference of two discs loses digits in a thinner one."""

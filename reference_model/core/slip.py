@@ -76,8 +76,8 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
             pace += abs(y[4]) / law.gyration
         if left * math.sqrt(across) / fall + left * left * pace < REST_TIME:
             return left
-    if len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST:
-        return left
+        if len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST:
+            return left
     return 0.0 if s < REVERSAL else -1.0
 
 
@@ -162,8 +162,8 @@ def first_event(
 
 @part
 def slide(
-    y: Unknowns, memory: FloatArray, tolerance: float, end: float, most_work: float, times: FloatArray, out: FloatArray,
-    law: Law, K: FloatArray, F: FloatArray,
+    y: Unknowns, memory: FloatArray, tolerance: float, end: float, most_work: float, times: FloatArray,
+    out: FloatArray, law: Law, K: FloatArray, F: FloatArray,
 ) -> Unknowns:  # fmt: skip
     """Take explicit steps until slip ends or is stiff, or the work of this call is done."""
     f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)

@@ -28,8 +28,8 @@ from reference_model.core.memory import (
     speed_of,
 )
 from reference_model.core.parts import part
-from reference_model.core.recording import record_series
 from reference_model.core.points import centre_slip
+from reference_model.core.recording import record_series
 from reference_model.core.rest import begun, drift
 from reference_model.core.slip import creep_from, point_for
 from reference_model.core.surfaces import has_rim, has_stop, value_of
@@ -175,13 +175,10 @@ def begin_slip(
         return y
     x_drift, y_drift, r_drift, turn = drift(y, law)
     h, start = FIRST_SPAN, six(y)
-    # A step beyond the return to rest would find slip in the opposite direction, so the last step ends at the peak.
-    peak = y[6] - first / gain if first > 0.0 > gain else math.inf
     known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
     for _ in range(MOST_STEPS):
-        if y[6] >= min(end, peak):
+        if y[6] >= end:
             break
-        h = min(h, peak - y[6])
         if known:
             guess = ahead(coefficients, h, before)
         else:

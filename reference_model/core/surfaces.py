@@ -101,8 +101,8 @@ def may_cross(which: int, side: float, y: Unknowns, new: Unknowns, law: Law) -> 
 
 @part
 def crossing(which: int, side: float, y: Unknowns, F: FloatArray, law: Law) -> float:
-    """Return the share of a step with the interpolant ``F`` after which a surface is crossed, or 1."""
-    least = 0.0 if which == SIDE_OF_GRIP or which == SIDE_OF_SPIN else ON_SURFACE
+    """Return the share of a step, with the interpolant ``F``, up to the crossing of a surface, or 1."""
+    least = 0.0 if which in (SIDE_OF_GRIP, SIDE_OF_SPIN) else ON_SURFACE
     before, after, seen = 0.0, 1.0, side * value_of(which, y, law) > least
     found = False
     for i in range(1, PLACES + 1):

@@ -26,8 +26,6 @@ from reference_model.motion.nondimensional import Units
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.stepper import Run, Thresholds
 from reference_model.systems import (
-    DiscOnDisc,
-    FloatArray,
     PinOnDisc,
     System,
     checked_state,

@@ -126,25 +126,31 @@ def digest_of(package: Path) -> str:
 
 
 def digest_of_text(functions: Iterable[Callable[..., Any]]) -> str:
-    """Return a digest of what numba compiles: the bytecode of functions, and the constants that they use."""
+    """Return a digest of the bytecode of functions, and of the constants that they use."""
     digest = hashlib.sha256()
     for function in functions:
         code = function.__code__
         own = [constant for constant in code.co_consts if constant != function.__doc__]
-        outer = [(name, _constant(function.__globals__[name])) for name in code.co_names if name in function.__globals__]
-        digest.update(repr((function.__name__, code.co_code, code.co_varnames, code.co_names, own, outer)).encode())
+        outer = [
+            (name, _constant(function.__globals__[name]))
+            for name in code.co_names
+            if name in function.__globals__
+        ]
+        digest.update(
+            repr((function.__name__, code.co_code, code.co_varnames, code.co_names, own, outer)).encode()
+        )
     return digest.hexdigest()[:16]
 
 
 def _constant(value: Any) -> Any:
-    """Return what of a global name is compiled; functions and modules are known by their names."""
+    """Return the value of a constant; functions and modules are known by their names."""
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     return value if isinstance(value, int | float | str | tuple) else getattr(value, "_fields", "")
 
 
 def _placed(function: Callable[..., Any], folder: Path) -> Callable[..., Any]:
-    """Return ``function`` as if it stood in a file of ``folder``, because numba compares the stamps of source files."""
+    """Return ``function`` as if it stood in a file of ``folder``: numba compares the stamps of source files."""
     file = folder / f"{function.__name__}.py"
     if not file.exists():
         file.touch()

@@ -19,7 +19,10 @@ from reference_model.core.run import advance
 from reference_model.core.single import compiled_core, law_of, simulate_by
 from reference_model.motion.nondimensional import Units
 
-SEEDS = (*range(2, 50, 6), 188)  # all transitions between phases; in the last motion a pivot gives way as it stops
+SEEDS = (
+    *range(2, 50, 6),
+    188,
+)  # all transitions between phases; in the last motion a pivot gives way as it stops
 UNIT = Units(1.0, 1.0)
 OF_ALL_STEPS = 30.0
 """Error bound in tolerances, as for motions of all kinds."""
@@ -71,7 +74,8 @@ def test_compiled_motions_are_interpreted_ones_to_rounding():
     for seed in SEEDS[:2]:
         run, contact = RandomMotion.of(seed), random_points(seed)
         fast, slow = (
-            simulate_by(core, run.system, run.start, TIMES, contact=contact) for core in (compiled_core(), advance)
+            simulate_by(core, run.system, run.start, TIMES, contact=contact)
+            for core in (compiled_core(), advance)
         )
         assert kinds(fast) == kinds(slow)
         assert np.abs(fast.states - slow.states).max() < 1e-9
@@ -85,7 +89,9 @@ def test_rates_and_their_derivatives_do_not_depend_on_the_point_whose_slip_is_an
     values = np.array(seen(y, centre, law)[:6])
     J, h = jacobian_at(values, law), 1e-6
     for k in range(6):
-        ahead, behind = (rates_at(np.tile(values + sign * h * np.eye(6)[k], (8, 1)), law)[0] for sign in (1, -1))
+        ahead, behind = (
+            rates_at(np.tile(values + sign * h * np.eye(6)[k], (8, 1)), law)[0] for sign in (1, -1)
+        )
         assert J[:, k] == pytest.approx((ahead - behind) / (2.0 * h), abs=1e-8)
     # The point moves as part of the disc.
     rates = rates_at(np.tile(y[:6], (8, 1)), centre)[0]
@@ -118,7 +124,8 @@ def test_slip_begins_where_it_grows_fastest():
         n = np.array(direction_of_points(x, y, angle, law))
         grown = np.array(growth(x, y, *(LEAST_SLIP * n).tolist(), angle, law)[:3])
         assert grown @ n > 0.0
-        assert np.abs(grown - (grown @ n) * n).max() < 1e-10
+        # The growth is flat there, so n is known to half its digits.
+        assert np.abs(grown - (grown @ n) * n).max() < 1e-8
         for other in rng.normal(size=(20, 3)):
             other /= np.linalg.norm(other)
             assert np.array(growth(x, y, *(LEAST_SLIP * other).tolist(), angle, law)[:3]) @ other <= grown @ n
@@ -139,9 +146,10 @@ def test_disc_whose_pull_exceeds_friction_by_a_hair_and_falls_slips_briefly(exce
     start = [place.real, place.imag, 0.1, v.real, v.imag, omega]
     found = simulate_by(advance, disc, start, [0.0, 1.0])
     assert kinds(found) == ["slip", "stick"]
-    # The excess is known to rounding of the pull.
-    error = 2.0 * excess + 3e-4 + 3e-16 / excess
-    assert found.phases[0].end == pytest.approx(2.0 * excess * pull / -rate, rel=error)
+    duration = 2.0 * excess * pull / -rate
+    # The excess is known to rounding of the pull. The last 1e-6 of slip that is not in closed form count as linear.
+    error = 2.0 * excess + 3e-4 + 3e-16 / excess + (1e-12 / duration**2 if duration > 1e-5 else 0.0)
+    assert found.phases[0].end == pytest.approx(duration, rel=error)
 
 
 def test_errors_of_an_undamped_motion_of_many_turns_do_not_add_up():
@@ -151,7 +159,8 @@ def test_errors_of_an_undamped_motion_of_many_turns_do_not_add_up():
     )  # fmt: skip
     start, times = [0.1, 0.0, 0.0, 0.03, 0.0, 20.8], np.linspace(0.0, 400.0, 41)
     found, tight = (
-        simulate_by(compiled_core(), disc, start, times, tolerance=tolerance).states for tolerance in (1e-9, 1e-12)
+        simulate_by(compiled_core(), disc, start, times, tolerance=tolerance).states
+        for tolerance in (1e-9, 1e-12)
     )
     assert np.abs(found - tight).max() < 13e-9
 
