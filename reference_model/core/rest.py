@@ -143,6 +143,8 @@ def _last_grip(
             if middle <= firmly or middle >= end:
                 break
         value = _spare(x, y, angle, middle, law)
+        if value == 0.0:
+            return middle
         if value > 0.0:
             firmly, low = middle, value
             high = 0.5 * high if side > 0 else high
@@ -151,8 +153,6 @@ def _last_grip(
             end, high = middle, value
             low = 0.5 * low if side < 0 else low
             side = -1
-            if value == 0.0:
-                break
     return firmly
 
 
