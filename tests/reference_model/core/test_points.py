@@ -19,10 +19,12 @@ from reference_model.core.run import advance
 from reference_model.core.single import compiled_core, law_of, simulate_by
 from reference_model.motion.nondimensional import Units
 
-SEEDS = (
-    *range(2, 50, 6),
-    188,
-)  # all transitions between phases; in the last motion a pivot gives way as it stops
+SEEDS = (*range(2, 50, 6), 188, 302)
+"""Motions with all transitions between phases.
+
+In motion 188 a pivot gives way as it stops, and in motion 302 the computed margin at release is exactly zero.
+"""
+
 UNIT = Units(1.0, 1.0)
 OF_ALL_STEPS = 30.0
 """Error bound in tolerances, as for motions of all kinds."""
