@@ -1,4 +1,4 @@
-"""One trajectory of a pin, a ring or an annulus by the core, interpreted or compiled."""
+"""One trajectory by the core, interpreted or compiled."""
 
 import functools
 import math
@@ -87,7 +87,7 @@ def simulate_compiled(
     tolerance: float = 1e-9,
     contact: Contact | None = None,
 ) -> Trajectory:
-    """Simulate like :func:`reference_model.simulate`, by compiled code; not for discs on single points.
+    """Simulate like :func:`reference_model.simulate`, by compiled code.
 
     Raises ``ValueError`` if the core does not know the contact.
     """
@@ -99,7 +99,7 @@ def require_known(contact: Contact) -> None:
     """Raise ``ValueError`` if the core does not contain a law."""
     if not isinstance(contact, Pin | Ring | Annulus | Points):
         raise ValueError(
-            f"contact = {contact}: compiled runs support a Ring, an Annulus and the law of the system's parameters; "
+            f"contact = {contact}: compiled runs support a Ring, an Annulus, Points and the law of the parameters; "
             "omit compiled=True"
         )
     if isinstance(contact, Annulus) and contact.pressure is not None:
