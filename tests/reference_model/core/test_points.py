@@ -72,17 +72,6 @@ def test_motion_on_points_is_the_limit_of_motions_with_smooth_friction(seed):
     assert np.abs(fine + (fine - coarse) / 3.0 - found).max() < change / 3.0 + OF_ALL_STEPS * 1e-9
 
 
-def test_compiled_motions_are_interpreted_ones_to_rounding():
-    for seed in SEEDS[:2]:
-        run, contact = RandomMotion.of(seed), random_points(seed)
-        fast, slow = (
-            simulate_by(core, run.system, run.start, TIMES, contact=contact)
-            for core in (compiled_core(), advance)
-        )
-        assert kinds(fast) == kinds(slow)
-        assert np.abs(fast.states - slow.states).max() < 1e-9
-
-
 @pytest.mark.parametrize("point", [-1, 0, 2])
 def test_rates_and_their_derivatives_do_not_depend_on_the_point_whose_slip_is_an_unknown(point):
     centre = law_on(8)
