@@ -5,6 +5,7 @@ import pytest
 
 from compare.claims.parameters import FIG5, FIG9
 from reference_model import Annulus, Ring, ThreeTermRing, simulate
+from reference_model.contact.contact_law import Pin
 from reference_model.ensemble import EndState, simulate_ensemble
 
 START = [0.1, 0.0, 0.0, 0.0]
@@ -40,6 +41,7 @@ def test_invalid_ensemble_is_refused(system, states, options, message):
 @pytest.mark.parametrize(
     ("system", "options", "message"),
     [
+        (FIG9, {"contact": Pin()}, "compiled runs support a Ring, an Annulus, Points and the law"),
         (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs support a Ring, an Annulus, Points and the law"),
         (FIG9, {"contact": Annulus(0.1, 0.2, pressure=lambda r: 1.0)}, "compiled runs support only a uniform one"),
         (FIG9, {"contact": Annulus(0.19999, 0.2)}, "with a width of at least 0.001 of outer_radius = 0.2 m"),
