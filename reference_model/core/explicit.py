@@ -12,7 +12,7 @@ from scipy.integrate import DOP853
 
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.rates import rates
-from reference_model.core.parts import part
+from reference_model.core.parts import inlined, part
 from reference_model.systems import FloatArray
 
 NAMES = ("x", "y", "ux", "uy", "r", "angle", "t")
@@ -61,7 +61,7 @@ It takes the unknowns, their rates, the step and the law, and writes the rates o
 """
 
 
-@part
+@inlined
 def shares_of(y: Unknowns, law: Law) -> tuple[float, float]:
     """Return factors of the tolerances of slip and r: small for small slip, and for the arm of a point for r."""
     if law.point == CENTRE:

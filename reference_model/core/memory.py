@@ -5,7 +5,7 @@ import math
 from reference_model.core.explicit import Unknowns
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.points import centre_slip, slip_of
-from reference_model.core.parts import part
+from reference_model.core.parts import inlined, part
 from reference_model.systems import FloatArray
 
 SLIPS, STICKS, PIVOTS = 1.0, 2.0, 3.0
@@ -27,13 +27,13 @@ RUNS, ENDS, FAILS, FULL = 0.0, 1.0, 2.0, 3.0
 """Values of the status; FULL asks for more room for phases."""
 
 
-@part
+@inlined
 def speed_of(y: Unknowns, law: Law) -> float:
     """Return the slip speed: of centre and rim together, of a point, or of the rotation about a point."""
     return math.sqrt(along(y, y, law))
 
 
-@part
+@inlined
 def along(a: Unknowns, y: Unknowns, law: Law) -> float:
     """Return the product of ``a`` with the slip in ``y``."""
     result = 0.0
@@ -82,7 +82,7 @@ def enter(memory: FloatArray, phases: FloatArray, kind: float, y: Unknowns, law:
         memory[PHASES] += 1.0
 
 
-@part
+@inlined
 def pending(memory: FloatArray, times: FloatArray, until: float) -> bool:
     """Return whether a requested time up to ``until`` is still to be recorded."""
     return bool(memory[RECORDED] < len(times) and times[int(memory[RECORDED])] <= until)

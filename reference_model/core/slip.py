@@ -24,7 +24,7 @@ from reference_model.core.memory import (
     seen,
     speed_of,
 )
-from reference_model.core.parts import part
+from reference_model.core.parts import inlined, part
 from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
 from reference_model.core.rest import creep_of
 from reference_model.core.surfaces import crossing, grip, may_cross
@@ -114,7 +114,7 @@ def slip_ends(y: Unknowns, f: Unknowns, memory: FloatArray, tolerance: float, la
     )  # fmt: skip
 
 
-@part
+@inlined
 def point_for(y: Unknowns, law: Law) -> int:
     """Return the contact point whose slip should be an unknown, or the centre."""
     if len(law.around) == 0 or law.sense != 0.0:

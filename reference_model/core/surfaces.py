@@ -8,7 +8,7 @@ from reference_model.core.forces.pivot import turning
 from reference_model.core.forces.points import centre_slip
 from reference_model.core.forces.rates import pull, rates
 from reference_model.core.memory import SIDE_OF_GRIP, SIDE_OF_HOLE, SIDE_OF_RIM, SIDE_OF_SPIN, SIDE_OF_STOP
-from reference_model.core.parts import part
+from reference_model.core.parts import inlined, part
 from reference_model.systems import FloatArray
 
 PLACES = 16
@@ -21,7 +21,7 @@ ON_SURFACE = 1e-9
 """Largest value at the start of a step that began on the surface."""
 
 
-@part
+@inlined
 def exists(which: int, law: Law) -> bool:
     """Return whether a motion can reach a surface: stop, edge of the contact at rest, or the end of a pivot."""
     if which == SIDE_OF_STOP:

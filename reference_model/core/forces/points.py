@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from reference_model.core.forces.law import CENTRE, WIDTH, Law
-from reference_model.core.parts import part
+from reference_model.core.parts import inlined, part
 from reference_model.systems import FloatArray
 
 CLOSE = 0.1
@@ -89,7 +89,7 @@ def point_to_follow(ux: float, uy: float, r: float, angle: float, law: Law) -> i
     return CENTRE
 
 
-@part
+@inlined
 def centre_slip(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple[float, float]:
     """Return the slip of the centre."""
     if law.point == CENTRE:
