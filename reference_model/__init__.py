@@ -8,8 +8,8 @@
 - ``motion``: the event-driven simulation of slip and stick, and the quasi-static motion of a pushed body;
 - ``steady``: steady motions, their stability, and its boundaries;
 - ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
-- ``core``: one trajectory of a pin, a ring or an annulus by the same functions, interpreted or compiled;
-- ``ensemble``: compiled simulation of many trajectories, or of one disc on points;
+- ``core``: one trajectory by the same functions, interpreted or compiled;
+- ``ensemble``: compiled simulation of many trajectories;
 - ``numerics``: roots, continuation, collocation, and curves where a function changes sign.
 """
 

@@ -2,11 +2,10 @@
 
 from numpy.typing import ArrayLike
 
-from reference_model.contact.contact_law import Contact, contact_of
-from reference_model.contact.points import Points
+from reference_model.contact.contact_law import Contact
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
-from reference_model.systems import DiscOnDisc, System, require_flag
+from reference_model.systems import System, require_flag
 from reference_model.trajectory import Trajectory
 
 
@@ -21,7 +20,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
-    Raises ``ValueError`` if an argument is invalid or the compiled kernel does not support the system, and
+    Raises ``ValueError`` if an argument is invalid or compiled code does not support the contact, and
     ``SimulationError`` if the integrator fails.
 
     Parameters
@@ -36,30 +35,19 @@ def simulate(
     tolerance
         Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
         :class:`motion.nondimensional.Units`. With damping or rest, errors in random motions stay within 13
-        tolerances, or 68 in compiled runs of single points. Otherwise they accumulate, to some 40 times after
-        10,000 steps.
+        tolerances. Otherwise they accumulate, to some 40 times after 10,000 steps.
     contact
         Friction law of a disc; None for the law of the parameters.
     compiled
-        Whether to use compiled code, which its first run on a machine compiles. It supports pins, rings and annuli
-        under uniform pressure, and up to 24 ``contact_points`` on linear supports. None: use it if ``contact`` is
-        None and it supports the system.
+        Whether to use compiled code, which its first run on a machine compiles. It supports pins, rings, contact
+        points and annuli under uniform pressure. None: use it if ``contact`` is None.
 
     """
-    law = contact_of(system, contact)
     if compiled is not None:
         require_flag("compiled", compiled)
-    else:
-        from reference_model.ensemble.simulate import is_supported
-
-        compiled = contact is None and (not isinstance(law, Points) or is_supported(system))
-    if not compiled:
+    if not (contact is None if compiled is None else compiled):
         return simulate_with(Thresholds(), system, initial_state, times, tolerance=tolerance, contact=contact)
     # Imported here so that simulations in NumPy start without the compiler.
-    if isinstance(system, DiscOnDisc) and isinstance(law, Points):
-        from reference_model.ensemble.single_run import simulate_points
-
-        return simulate_points(system, initial_state, times, tolerance=tolerance, contact=contact)
     from reference_model.core.single import simulate_compiled
 
     return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)

@@ -221,7 +221,7 @@ compiled = register(
         functools.partial(_simulate_reference, compiled=None),
         EVERY_KIND,
         kin="reference",
-        about="compiled is the reference by its compiled code, except discs on points with a nonlinear support.",
+        about="compiled is the reference by its compiled code.",
     ),
     on_request=True,
 )

@@ -1,11 +1,11 @@
-"""The motion of a pin, a ring or an annulus, written once for interpreted and compiled runs.
+"""The motion of a pin or a disc, written once for interpreted and compiled runs.
 
 The functions are plain Python on numbers and tuples. numba compiles them when a compiled run is requested.
 
-- ``forces``: support, damper and friction;
-- ``rest``: friction at rest, release, and the beginning of slip;
+- ``forces``: support, damper, friction and the equations of motion;
+- ``rest``, ``limit``: friction at rest, release, and the beginning of slip;
 - ``explicit``, ``collocation``: steps of both methods, used by ``slip`` and ``stiff``;
-- ``surfaces``: the kinks of the forces;
+- ``surfaces``: the kinks of the forces, and the end of a pivot;
 - ``recording``: the motion at the requested times;
 - ``run``, ``memory``: the sequence of phases, in calls of bounded length;
 - ``single``: one trajectory.

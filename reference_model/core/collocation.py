@@ -9,7 +9,9 @@ import math
 
 import numpy as np
 
-from reference_model.core.forces import Law, friction, pull, secant, tangent
+from reference_model.core.forces.law import CENTRE, Law
+from reference_model.core.forces.points import turning_of_friction
+from reference_model.core.forces.rates import friction, growth, secant, tangent
 from reference_model.core.parts import part
 from reference_model.numerics.collocation import FROM_START, INTEGRAL, NODES
 from reference_model.systems import FloatArray
@@ -20,73 +22,118 @@ DIFFERENCE = 1e-7
 MOST_ITERATIONS = 14
 
 CONVERGED, NEAR = 1e-7, 1e-9
-"""Last change of Newton's method, relative in slip and absolute in x and y; the next would be rounding error."""
+"""Last change in Newton's method, relative for slip and absolute for the rest, before the next is rounding error."""
 
 NOISE = 10.0
 """Change, in these units, that may be noise if it hardly falls."""
 
 
+ROUNDING = 1e-14
+"""Rounding error of the last terms of a series relative to its values."""
+
+
 @part
 def rates_at(values: FloatArray, law: Law) -> FloatArray:
-    """Return the rates of x, y, ux, uy and r in time at the nodes, shape (NODES, 5)."""
-    result = np.empty((NODES, 5))
+    """Return the rates of x, y, the slip, r and the angle in time at the nodes, shape (NODES, 6)."""
+    result = np.empty((NODES, 6))
     for i in range(NODES):
-        x, y, ux, uy, r = values[i, 0], values[i, 1], values[i, 2], values[i, 3], values[i, 4]
-        ax, ay = pull(x, y, ux, uy, law)
-        fx, fy, fr = friction(ux, uy, r, law)
+        x, y, vx, vy, r, angle = (
+            values[i, 0],
+            values[i, 1],
+            values[i, 2],
+            values[i, 3],
+            values[i, 4],
+            values[i, 5],
+        )
+        ax, ay, ar, _, ux, uy = growth(x, y, vx, vy, r, angle, law)
         result[i, 0] = ux - law.omega * y
         result[i, 1] = uy + law.omega * x
-        result[i, 2] = ax + fx
-        result[i, 3] = ay + fy
-        result[i, 4] = fr - law.shaft * (r + law.lag)
+        result[i, 2] = ax
+        result[i, 3] = ay
+        result[i, 4] = ar
+        result[i, 5] = law.omega + r / law.gyration
     return result
 
 
 @part
-def jacobian_at(x: float, y: float, ux: float, uy: float, r: float, law: Law) -> FloatArray:
-    """Return the derivatives of the rates, shape (5, 5).
+def friction_derivatives(vx: float, vy: float, r: float, angle: float, law: Law) -> FloatArray:
+    """Return the derivatives of the acceleration by friction of the centre and r, shape (3, 4).
 
-    Those of friction are differences. Friction does not change along the slip, so this derivative is removed.
+    Those of a ring are differences. Friction does not change along the slip, so this derivative is removed.
     """
-    J = np.zeros((5, 5))
+    if len(law.around) > 0:
+        return turning_of_friction(vx, vy, r, angle, law)
+    result = np.zeros((3, 4))
+    if law.friction == 0.0:
+        return result
+    s = math.sqrt(vx * vx + vy * vy + r * r)
+    n = (vx / s, vy / s, r / s)
+    at = friction(n[0], n[1], n[2], angle, law)
+    for j in range(2 if law.outer == 0.0 else 3):
+        h = DIFFERENCE
+        moved = friction(
+            n[0] + (h if j == 0 else 0.0),
+            n[1] + (h if j == 1 else 0.0),
+            n[2] + (h if j == 2 else 0.0),
+            angle,
+            law,
+        )
+        for i in range(3):
+            result[i, j] = (moved[i] - at[i]) / (h * s)
+    for i in range(3):
+        along = result[i, 0] * n[0] + result[i, 1] * n[1] + result[i, 2] * n[2]
+        for j in range(3):
+            result[i, j] -= along * n[j]
+    return result
+
+
+@part
+def jacobian_at(values: FloatArray, law: Law) -> FloatArray:
+    """Return the derivatives of the rates at a node, shape (6, 6)."""
+    x, y, vx, vy, r, angle = values[0], values[1], values[2], values[3], values[4], values[5]
+    J = np.zeros((6, 6))
     omega, damping = law.omega, law.damping
     wx = x - law.offset
     d = math.sqrt(wx * wx + y * y)
     k = secant(d, law)
     more = (tangent(d, law) - k) / (d * d) if d > 0.0 else 0.0
-    J[0, 1], J[1, 0], J[0, 2], J[1, 3] = -omega, omega, 1.0, 1.0
+    # Acceleration of the centre, by x, y and its slip
     J[2, 0] = -k - more * wx * wx + omega * omega
     J[2, 1] = -more * wx * y + damping * omega
     J[3, 0] = -more * wx * y - damping * omega
     J[3, 1] = -k - more * y * y + omega * omega
+    J[0, 1], J[1, 0], J[0, 2], J[1, 3], J[5, 4] = -omega, omega, 1.0, 1.0, 1.0 / law.gyration
     J[2, 2] = J[3, 3] = -damping
     J[2, 3], J[3, 2] = omega, -omega
     J[4, 4] = -law.shaft
-    if law.friction > 0.0:
-        s = math.sqrt(ux * ux + uy * uy + r * r)
-        n = (ux / s, uy / s, r / s)
-        at = friction(n[0], n[1], n[2], law)
-        found = np.zeros((3, 3))
-        for j in range(2 if law.outer == 0.0 else 3):
-            h = DIFFERENCE
-            moved = friction(
-                n[0] + (h if j == 0 else 0.0),
-                n[1] + (h if j == 1 else 0.0),
-                n[2] + (h if j == 2 else 0.0),
-                law,
-            )
-            for i in range(3):
-                found[i, j] = (moved[i] - at[i]) / (h * s)
-        for i in range(3):
-            along = found[i, 0] * n[0] + found[i, 1] * n[1] + found[i, 2] * n[2]
-            for j in range(3):
-                J[2 + i, 2 + j] += found[i, j] - along * n[j]
+    bent = friction_derivatives(vx, vy, r, angle, law)
+    c, s = math.cos(angle), math.sin(angle)
+    ex, ey = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    if law.point != CENTRE:
+        # The slip of the centre is v − i·r·η.
+        for i in range(4):
+            by_x, by_y = J[i, 2], J[i, 3]
+            J[i, 4] = by_x * ey - by_y * ex
+            J[i, 5] = r * (by_x * ex + by_y * ey)
+    for i in range(3):
+        for j in range(4):
+            J[2 + i, 2 + j] += bent[i, j]
+    if law.point != CENTRE:
+        ar, turn = growth(x, y, vx, vy, r, angle, law)[2], r * (omega + r / law.gyration)
+        for j in range(6):
+            J[2, j] -= ey * J[4, j]
+            J[3, j] += ex * J[4, j]
+        more = omega + 2.0 * r / law.gyration
+        J[2, 4] -= more * ex
+        J[3, 4] -= more * ey
+        J[2, 5] += turn * ey - ar * ex
+        J[3, 5] -= turn * ex + ar * ey
     return J
 
 
 @part
 def residual_of(values: FloatArray, start: FloatArray, h: float, n: int, law: Law) -> FloatArray:
-    """Return the residual of the first ``n`` unknowns at the nodes, shape (NODES·n,)."""
+    """Return the residuals of the first ``n`` unknowns at the nodes, shape (NODES·n,)."""
     rates = rates_at(values, law)
     result = np.empty(NODES * n)
     for i in range(NODES):
@@ -103,7 +150,7 @@ def newton_matrix(values: FloatArray, h: float, n: int, law: Law) -> FloatArray:
     """Return the derivatives of :func:`residual_of`, shape (NODES·n, NODES·n)."""
     matrix = np.zeros((NODES * n, NODES * n))
     for j in range(NODES):
-        J = jacobian_at(values[j, 0], values[j, 1], values[j, 2], values[j, 3], values[j, 4], law)
+        J = jacobian_at(values[j], law)
         for i in range(NODES):
             factor = -h * INTEGRAL[i, j]
             for v in range(n):
@@ -118,7 +165,7 @@ def newton_matrix(values: FloatArray, h: float, n: int, law: Law) -> FloatArray:
 def solve_linear(matrix: FloatArray, right: FloatArray) -> None:
     """Replace ``right``, shape (n,), by the solution of a system; both are overwritten, and nan if it is singular.
 
-    It eliminates with pivots, because LAPACK's rounding differs between libraries.
+    This is Gauss's elimination with pivots, because rounding by LAPACK differs between libraries.
     """
     n = len(right)
     work = np.empty(n)
@@ -150,9 +197,10 @@ def solve_linear(matrix: FloatArray, right: FloatArray) -> None:
 
 @part
 def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[bool, FloatArray]:
-    """Return whether Newton's method converged, and the unknowns at the nodes, shape (NODES, 5)."""
+    """Return whether Newton's method converged, and the unknowns at the nodes, shape (NODES, 6)."""
     values, last = guess.copy(), math.inf
-    n = 5 if law.outer > 0.0 else 4
+    n = 6 if len(law.around) > 0 else (5 if law.outer > 0.0 else 4)
+    slip = min(n, 5) if law.point == CENTRE else 4
     for _ in range(MOST_ITERATIONS):
         residual = residual_of(values, start, h, n, law)
         matrix = newton_matrix(values, h, n, law)
@@ -170,7 +218,7 @@ def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[boo
         largest = 0.0
         for i in range(NODES):
             s = moved = 0.0
-            for v in range(2, n):
+            for v in range(2, slip):
                 s += values[i, v] ** 2
                 moved += change[n * i + v] ** 2
             s, moved = math.sqrt(s), math.sqrt(moved)
@@ -178,9 +226,10 @@ def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[boo
                 return False, values
             shrunk = min(1.0, 0.7 * s / moved) if moved > 0.0 else 1.0
             for v in range(n):
-                values[i, v] -= (shrunk if v > 1 else 1.0) * change[n * i + v]
+                values[i, v] -= (shrunk if 2 <= v < slip else 1.0) * change[n * i + v]
+                if not 2 <= v < slip:
+                    largest = max(largest, abs(change[n * i + v]) / NEAR)
             largest = max(largest, moved / (CONVERGED * s + 1e-15 * h))
-            largest = max(largest, abs(change[n * i]) / NEAR, abs(change[n * i + 1]) / NEAR)
         if largest < 1.0 or (largest < NOISE and largest > 0.5 * last):
             return True, values
         last = largest
@@ -188,16 +237,16 @@ def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[boo
 
 
 @part
-def series(start: FloatArray, angle: float, h: float, values: FloatArray, law: Law) -> FloatArray:
-    """Return Legendre coefficients of x, y, ux, uy, r and the angle over the step, shape (NODES + 1, 6)."""
+def series(start: FloatArray, h: float, values: FloatArray, law: Law) -> FloatArray:
+    """Return Legendre coefficients of the unknowns over the step, shape (NODES + 1, 6)."""
     samples = np.empty((NODES + 1, 6))
-    samples[0, :5], samples[1:, :5] = start, values
-    samples[0, 5] = angle
-    for i in range(NODES):
-        turned = 0.0
-        for j in range(NODES):
-            turned += INTEGRAL[i, j] * (law.omega + values[j, 4] / law.gyration)
-        samples[1 + i, 5] = angle + h * turned
+    samples[0], samples[1:] = start, values
+    if len(law.around) == 0:  # the angle follows from r
+        for i in range(NODES):
+            turned = 0.0
+            for j in range(NODES):
+                turned += INTEGRAL[i, j] * (law.omega + values[j, 4] / law.gyration)
+            samples[1 + i, 5] = start[5] + h * turned
     result = np.zeros((NODES + 1, 6))
     for i in range(NODES + 1):
         for j in range(NODES + 1):
@@ -219,12 +268,18 @@ def at(coefficients: FloatArray, place: float) -> FloatArray:
 
 
 @part
-def error_of(coefficients: FloatArray, tolerance: float) -> float:
+def error_of(coefficients: FloatArray, tolerance: float, law: Law) -> float:
     """Return the size of the last terms in tolerances."""
     end = at(coefficients, 1.0)
-    s = math.sqrt(end[2] ** 2 + end[3] ** 2 + end[4] ** 2)
+    slip = 5 if law.point == CENTRE else 4
+    s = 0.0
+    for v in range(2, slip):
+        s += end[v] ** 2
+    s = math.sqrt(s)
     error = 0.0
-    for v in range(5):
-        scale = tolerance * (1.0 + abs(end[v])) if v < 2 else min(tolerance, 0.03 * s)
+    for v in range(6 if len(law.around) > 0 else 5):
+        scale = tolerance * (1.0 + abs(end[v]) if v < 5 else 1.0) + ROUNDING * abs(end[v])
+        if 2 <= v < slip:
+            scale = min(tolerance, 0.03 * s)
         error = max(error, abs(coefficients[NODES, v]) / scale, 0.1 * abs(coefficients[NODES - 1, v]) / scale)
     return error

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DOP853
 
-from reference_model.core.forces import Law, rates
-from reference_model.core.parts import part
+from reference_model.core.forces.law import CENTRE, Law
+from reference_model.core.forces.rates import rates
+from reference_model.core.parts import inlined, part
 from reference_model.systems import FloatArray
 
 NAMES = ("x", "y", "ux", "uy", "r", "angle", "t")
@@ -36,7 +37,7 @@ def _text() -> str:
     lines = ["def take(start, first, h, law, K):", f"{', '.join(NAMES)} = start"]
     lines.append(f"{', '.join(f'k1{name}' for name in NAMES)} = first")
     for stage in range(2, STAGES + 1):
-        arguments = ", ".join(f"{name} + h * ({_sum(DOP853.A[stage - 1], name)})" for name in NAMES[:5])
+        arguments = ", ".join(f"{name} + h * ({_sum(DOP853.A[stage - 1], name)})" for name in NAMES[:6])
         found = ", ".join(f"k{stage}{name}" for name in NAMES)
         lines.append(f"{found} = rates({arguments}, law)")
     for result, weights in (("new", DOP853.B), ("third", DOP853.E3), ("fifth", DOP853.E5)):
@@ -60,6 +61,22 @@ It takes the unknowns, their rates, the step and the law, and writes the rates o
 """
 
 
+@inlined
+def shares_of(y: Unknowns, law: Law) -> tuple[float, float]:
+    """Return factors of the tolerances of slip and r: small for small slip, and for the arm of a point for r."""
+    if law.point == CENTRE:
+        s = math.sqrt(y[2] * y[2] + y[3] * y[3] + y[4] * y[4])
+        share = s / (s + law.stretch) if law.stretch > 0.0 else 1.0
+        return share, share
+    squared = 1.0 + law.arm_x * law.arm_x + law.arm_y * law.arm_y
+    spin = 1.0 / math.sqrt(squared)
+    if law.sense != 0.0:
+        return 1.0, spin
+    v = math.sqrt(y[2] * y[2] + y[3] * y[3])
+    slip = v / (v + law.stretch * law.share * squared)
+    return slip, spin * abs(y[4]) / (abs(y[4]) + law.stretch)
+
+
 @part
 def error_of(
     old: Unknowns, new: Unknowns, third: Unknowns, fifth: Unknowns, tolerance: float, law: Law
@@ -68,15 +85,16 @@ def error_of(
 
     The error of small slip counts relative to slip, because its direction decides where slip ends.
     """
-    s = math.sqrt(new[2] * new[2] + new[3] * new[3] + new[4] * new[4])
-    share = s / (s + law.stretch) if law.stretch > 0.0 else 1.0
+    slip, spin = shares_of(new, law)
     high = low = 0.0
     for v in range(SIZE):
         scale = tolerance
         if v < 5:
             scale *= 1.0 + max(abs(old[v]), abs(new[v]))
-        if 2 <= v < 5:
-            scale *= share
+        if 2 <= v < 4:
+            scale *= slip
+        elif v == 4:
+            scale *= spin
         inverse = 1.0 / scale
         a, b = fifth[v] * inverse, third[v] * inverse
         high += a * a
@@ -91,8 +109,7 @@ def factor_of(error: float) -> float:
     """Return the factor for the next step, error^(−1/8) within bounds."""
     if not error < 1e300:
         return 0.2
-    factor: float = 0.9 * max(error, 1e-30) ** -0.125
-    return min(max(factor, 0.2), 10.0)
+    return float(min(max(0.9 * max(error, 1e-30) ** -0.125, 0.2), 10.0))
 
 
 @part
@@ -104,13 +121,13 @@ def interpolate(
         K[STAGES, v] = last[v]
     for i in range(3):
         stage = STAGES + 1 + i
-        place = np.zeros(5)
-        for v in range(5):
+        place = np.zeros(6)
+        for v in range(6):
             total = 0.0
             for j in range(stage):
                 total += EXTRA[i, j] * K[j, v]
             place[v] = y[v] + h * total
-        found = rates(place[0], place[1], place[2], place[3], place[4], law)
+        found = rates(place[0], place[1], place[2], place[3], place[4], place[5], law)
         for v in range(SIZE):
             K[stage, v] = found[v]
     for v in range(SIZE):

@@ -12,7 +12,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 PARTS: list[Callable[..., Any]] = []
 """Functions that compiled code calls."""
 
-INLINED: set[Callable[..., Any]] = set()
+INLINED: list[Callable[..., Any]] = []
 """Those that are small and called often."""
 
 
@@ -23,21 +23,24 @@ def part(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Register a part that is compiled into each caller, because a call would take longer than its work."""
-    INLINED.add(part(function))
+    """Register a part that is compiled into each caller, because a call would take longer than its work.
+
+    It must neither create nor return arrays: counting references to them would take a third of the time of a step.
+    """
+    INLINED.append(part(function))
     return function
 
 
 def compiled(function: Callable[..., None]) -> "CompiledOnce":
     """Return ``function``, which calls parts, as compiled code.
 
-    The cache depends only on the text of these functions, and on the constants in it.
+    The cache depends only on the text of these functions and of this one, and on the constants in it.
     """
     from numba.extending import register_jitable
 
     from reference_model.numerics.compiled_once import CompiledOnce, digest_of_text
 
     for each in PARTS:
-        inline = {"forceinline": True} if each in INLINED else {}
+        inline = {"forceinline": True, "_nrt": False} if each in INLINED else {}
         register_jitable(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **inline)(each)
-    return CompiledOnce(function, Path(__file__).parent, digest_of_text([*PARTS, function]))
+    return CompiledOnce(function, Path(__file__).parent, digest_of_text([*PARTS, *INLINED, function, compiled]))

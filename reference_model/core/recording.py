@@ -4,7 +4,8 @@ import math
 
 from reference_model.core.collocation import at
 from reference_model.core.explicit import SIZE, Unknowns, component, inside, take
-from reference_model.core.forces import Law, rates
+from reference_model.core.forces.law import CENTRE, Law
+from reference_model.core.forces.rates import rates
 from reference_model.core.memory import EVALUATIONS, RECORDED, carried, pending, put
 from reference_model.core.parts import part
 from reference_model.systems import FloatArray
@@ -13,7 +14,7 @@ AS_GOOD = 20.0
 """Largest error of the interpolant, in tolerances of a step, within the requested tolerance."""
 
 NEAR = 1e-8
-"""Largest last correction of Newton's method; the next one would be rounding error."""
+"""Last correction in Newton's method, before the next one is rounding error."""
 
 MOST_CORRECTIONS = 20
 
@@ -24,7 +25,7 @@ Creep = tuple[float, float, float, float]
 def is_accurate(h: float, F: FloatArray, tolerance: float, law: Law) -> bool:
     """Return whether the defect of the interpolant in the middle of a step, over half of it, is small enough."""
     y = inside(F, 0.5)
-    found = rates(y[0], y[1], y[2], y[3], y[4], law)
+    found = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
     error = 0.0
     for v in range(SIZE):
         scale = tolerance * (1.0 + abs(y[v]) if v < 5 else 1.0)
@@ -34,7 +35,13 @@ def is_accurate(h: float, F: FloatArray, tolerance: float, law: Law) -> bool:
 
 @part
 def record_step(
-    y: Unknowns, new: Unknowns, F: FloatArray, memory: FloatArray, times: FloatArray, out: FloatArray
+    y: Unknowns,
+    new: Unknowns,
+    F: FloatArray,
+    memory: FloatArray,
+    times: FloatArray,
+    out: FloatArray,
+    law: Law,
 ) -> None:
     """Record times within an explicit step by its interpolant."""
     while pending(memory, times, new[6]):
@@ -46,7 +53,7 @@ def record_step(
             place = min(max(place + change, 0.0), 1.0)
             if abs(change) < NEAR:
                 break
-        put(out[int(memory[RECORDED])], inside(F, place))
+        put(out[int(memory[RECORDED])], inside(F, place), law)
         memory[RECORDED] += 1.0
 
 
@@ -63,15 +70,17 @@ def record_by_steps(
         for _ in range(MOST_CORRECTIONS):
             there = take(y, first, tau, law, K)[0]
             memory[EVALUATIONS] += 12.0
-            f = rates(there[0], there[1], there[2], there[3], there[4], law)
+            f = rates(there[0], there[1], there[2], there[3], there[4], there[5], law)
             late = (t - there[6]) / f[6]
             if abs(late) < NEAR * h:
                 break
             tau = min(max(tau + late, 0.0), h)
         late = (t - there[6]) / f[6]
-        row = out[int(memory[RECORDED])]
-        for v in range(6):
-            row[v] = there[v] + late * f[v]
+        there = (
+            there[0] + late * f[0], there[1] + late * f[1], there[2] + late * f[2], there[3] + late * f[3],
+            there[4] + late * f[4], there[5] + late * f[5], t,
+        )  # fmt: skip
+        put(out[int(memory[RECORDED])], there, law)
         memory[RECORDED] += 1.0
 
 
@@ -84,11 +93,14 @@ def record_series(
     memory: FloatArray,
     times: FloatArray,
     out: FloatArray,
+    law: Law,
 ) -> None:
     """Record times within a step of collocation that begins at ``t``."""
     while pending(memory, times, end):
         found = at(coefficients, (times[int(memory[RECORDED])] - t) / h)
-        out[int(memory[RECORDED])] = found
+        put(
+            out[int(memory[RECORDED])], (found[0], found[1], found[2], found[3], found[4], found[5], 0.0), law
+        )
         memory[RECORDED] += 1.0
 
 
@@ -110,7 +122,7 @@ def record_carried(
 ) -> Unknowns:
     """Record a body that sticks or creeps until a time; return its unknowns then."""
     while pending(memory, times, until):
-        put(out[int(memory[RECORDED])], creeping(y, times[int(memory[RECORDED])] - y[6], creep, law))
+        put(out[int(memory[RECORDED])], creeping(y, times[int(memory[RECORDED])] - y[6], creep, law), law)
         memory[RECORDED] += 1.0
     end = creeping(y, until - y[6], creep, law)
     return (end[0], end[1], end[2], end[3], end[4], end[5], until)
@@ -123,11 +135,11 @@ def record_falling(
     """Follow the last ``left`` of slip, which falls linearly; return the body at rest, or at the end of the run."""
     until = min(y[6] + left, end)
     while pending(memory, times, until):
-        put(out[int(memory[RECORDED])], falling(y, times[int(memory[RECORDED])] - y[6], left, law))
+        put(out[int(memory[RECORDED])], falling(y, times[int(memory[RECORDED])] - y[6], left, law), law)
         memory[RECORDED] += 1.0
     last = falling(y, until - y[6], left, law)
     if y[6] + left <= end:
-        return (last[0], last[1], 0.0, 0.0, 0.0, last[5], until)
+        return (last[0], last[1], 0.0, 0.0, 0.0 if law.point == CENTRE else last[4], last[5], until)
     return (last[0], last[1], last[2], last[3], last[4], last[5], until)
 
 
@@ -135,4 +147,17 @@ def record_falling(
 def falling(y: Unknowns, delay: float, left: float, law: Law) -> Unknowns:
     """Return the unknowns after ``delay`` of slip that falls linearly to zero within ``left``."""
     share = delay / left if left > 0.0 else 1.0
-    return carried(y, delay, delay * (1.0 - 0.5 * share), 1.0 - share, law)
+    if law.point == CENTRE:
+        return carried(y, delay, delay * (1.0 - 0.5 * share), 1.0 - share, law)
+    # The disc turns about a point that comes to rest: by the midpoint rule.
+    f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
+    first, half = 0.5 * delay / f[6], 1.0 - 0.5 * share
+    f = rates(
+        y[0] + first * f[0], y[1] + first * f[1], half * y[2], half * y[3], y[4] + first * f[4], y[5] + first * f[5],
+        law,
+    )  # fmt: skip
+    whole = delay / f[6]
+    return (
+        y[0] + whole * f[0], y[1] + whole * f[1], (1.0 - share) * y[2], (1.0 - share) * y[3], y[4] + whole * f[4],
+        y[5] + whole * f[5], y[6] + delay,
+    )  # fmt: skip

@@ -1,9 +1,15 @@
 """The sequence of slip and stick phases of one body, in calls of bounded length."""
 
+import math
+
 import numpy as np
 
-from reference_model.core.explicit import EXTENDED, SIZE, TERMS
-from reference_model.core.forces import rates, unpacked
+from reference_model.core.explicit import EXTENDED, SIZE, TERMS, Unknowns
+from reference_model.core.forces.law import CENTRE, Law, seen_from, unpacked
+from reference_model.core.forces.pivot import first_slip, turning
+from reference_model.core.forces.points import centre_slip
+from reference_model.core.forces.rates import pull, rates
+from reference_model.core.limit import pivot_from_rest
 from reference_model.core.memory import (
     ENDS,
     FAILS,
@@ -11,61 +17,139 @@ from reference_model.core.memory import (
     PATIENCE,
     PHASE,
     PHASES,
+    PIVOTS,
+    POINT,
     RUNS,
+    SENSE,
     SHORT,
+    SIDE_OF_GRIP,
+    SIDE_OF_SPIN,
     SLIPS,
     STATUS,
+    STEP,
     STEPS,
     STICKS,
     WORK,
     enter,
+    seen,
     speed_of,
 )
+from reference_model.core.parts import part
 from reference_model.core.recording import record_carried, record_falling
-from reference_model.core.rest import holds_for
-from reference_model.core.slip import creep_from, slide, time_left
-from reference_model.core.stiff import begin_slip, slip_stiffly
-from reference_model.core.surfaces import sides
+from reference_model.core.rest import direction, holds_for
+from reference_model.core.slip import creep_from, ends_together, point_for, slide, time_left
+from reference_model.core.stiff import FIRST_STEP, at_rest, begin_slip, slip_stiffly
+from reference_model.core.surfaces import grip, sides
 from reference_model.systems import FloatArray
+
+AT_REST = 1e-15
+"""Slip speed of a point, as a share of that of the centre, that is rounding error."""
+
+
+@part
+def followed(y: Unknowns, law: Law) -> tuple[Unknowns, Law]:
+    """Return the unknowns and the law with the slip of the centre, or of a contact point that slips slowly."""
+    point = point_for(y, law)
+    if point == law.point:
+        return y, law
+    new = seen_from(point, 0.0, law)
+    return seen(y, law, new), new
+
+
+@part
+def as_started(y: Unknowns, law: Law) -> tuple[Unknowns, Law]:
+    """Return the first unknowns, where a point that moves with the master disc to rounding error rests."""
+    new, about = followed(y, law)
+    if about.point != CENTRE and speed_of(new, about) <= AT_REST * speed_of(y, law):
+        new = (new[0], new[1], 0.0, 0.0, new[4], new[5], new[6])
+    return new, about
+
+
+@part
+def pivots(y: Unknowns, memory: FloatArray, law: Law) -> bool:
+    """Return whether friction holds a point that rests while the disc turns."""
+    if at_rest(y, law) or memory[SIDE_OF_GRIP] < 0.0:
+        return False
+    return grip(y, seen_from(law.point, math.copysign(1.0, y[4]), law)) > 0.0
+
+
+@part
+def departing(y: Unknowns, law: Law) -> tuple[tuple[float, float, float], Law]:
+    """Return the direction of the slip that begins: of all points, all but one, or one about which the disc turns."""
+    if at_rest(y, law):
+        point, sense = pivot_from_rest(y[0], y[1], y[5], law)
+        if point != CENTRE:
+            return (0.0, 0.0, sense), seen_from(point, sense, law)
+        return direction(y[0], y[1], y[5], law), seen_from(CENTRE, 0.0, law)
+    ux, uy = centre_slip(0.0, 0.0, y[4], y[5], law)
+    ax, ay = pull(y[0], y[1], ux, uy, law)
+    _, bx, by, _, _ = turning(ax, ay, y[4], y[5], seen_from(law.point, math.copysign(1.0, y[4]), law))
+    ex, ey = first_slip(bx, by, y[5], law)
+    return (ex, ey, 0.0), seen_from(law.point, 0.0, law)
 
 
 def advance(
     state: FloatArray, memory: FloatArray, tolerance: float, end: float, times: FloatArray, out: FloatArray,
-    phases: FloatArray, most_work: float, parameters: FloatArray,
+    phases: FloatArray, most_work: float, parameters: FloatArray, around: FloatArray,
 ) -> None:  # fmt: skip
     """Continue a run from ``state``, shape (7,), for about ``most_work`` explicit steps.
 
     The result does not depend on ``most_work``. ``times`` are the requested times, (n,), ``out`` the unknowns without
     the time, (n, 6), and ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at
-    time 0 and takes steps with errors of ``tolerance``. ``parameters`` are those of the law.
+    time 0 and takes steps with errors of ``tolerance``. ``parameters`` and ``around`` are those of the law.
     """
-    law = unpacked(parameters)
+    law = seen_from(int(memory[POINT]) - 1, memory[SENSE], unpacked(parameters, around))
     y = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
     K, F = np.empty((EXTENDED, SIZE)), np.empty((TERMS + 1, SIZE))
     none = (0.0, 0.0, 0.0, 0.0)
     work = memory[WORK] + most_work
     if memory[PHASE] == 0.0:
+        y, law = as_started(y, law)
         sides(y, memory, law)
-        sticks = speed_of(y) == 0.0 and law.friction > 0.0 and holds_for(y[0], y[1], law) > 0.0
-        enter(memory, phases, STICKS if sticks else SLIPS, y)
+        kind = SLIPS
+        if speed_of(y, law) == 0.0 and law.friction > 0.0:
+            if at_rest(y, law) and holds_for(y[0], y[1], y[5], law) > 0.0:
+                kind = STICKS
+            elif pivots(y, memory, law) or departing(y, law)[1].sense != 0.0:
+                kind = PIVOTS
+        enter(memory, phases, kind, y, law)
     while y[6] < end and memory[WORK] < work and memory[STATUS] == RUNS:
-        if memory[PHASES] > len(phases) - 2:
+        if memory[PHASES] > len(phases) - 3:
             memory[STATUS] = FULL
             break
-        if speed_of(y) == 0.0 and law.friction > 0.0:
-            held = holds_for(y[0], y[1], law)
+        if memory[SIDE_OF_SPIN] < 0.0:
+            y = (y[0], y[1], 0.0, 0.0, 0.0, y[5], y[6])
+            memory[SIDE_OF_SPIN] = 1.0
+        y, law = followed(y, law)
+        if law.friction > 0.0 and (speed_of(y, law) == 0.0 or memory[SIDE_OF_GRIP] < 0.0):
             memory[WORK] += 1.0
-            if held > 0.0:
-                enter(memory, phases, STICKS, y)
-                y = record_carried(y, min(y[6] + held, end), none, memory, times, out, law)
-                memory[STEPS] += 1.0
-                if y[6] >= end:
-                    break
-            enter(memory, phases, SLIPS, y)
-            y = begin_slip(y, memory, tolerance, end, times, out, law)
+            if pivots(y, memory, law):
+                law = seen_from(law.point, math.copysign(1.0, y[4]), law)
+                enter(memory, phases, PIVOTS, y, law)
+                memory[STEP], memory[SHORT] = FIRST_STEP, 0.0
+                continue
+            if at_rest(y, law):
+                law = seen_from(CENTRE, 0.0, law)
+                y = (y[0], y[1], 0.0, 0.0, 0.0, y[5], y[6])
+                held = holds_for(y[0], y[1], y[5], law)
+                if held > 0.0:
+                    enter(memory, phases, STICKS, y, law)
+                    y = record_carried(y, min(y[6] + held, end), none, memory, times, out, law)
+                    memory[STEPS] += 1.0
+                    if y[6] >= end:
+                        break
+            n, law = departing(y, law)
+            enter(memory, phases, PIVOTS if law.sense != 0.0 else SLIPS, y, law)
+            y = begin_slip(y, n, memory, tolerance, end, times, out, law)
             sides(y, memory, law)
+            if law.sense != 0.0 and y[4] == 0.0:
+                y = slide(y, memory, tolerance, end, work, times, out, law, K, F)
             continue
-        f = rates(y[0], y[1], y[2], y[3], y[4], law)
+        f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
+        if ends_together(y, law):
+            whole = seen_from(CENTRE, 0.0, law)
+            y, law = seen(y, law, whole), whole
+            f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
         left = time_left(y, f, law)
         if left >= 0.0:
             memory[STEPS] += 1.0
@@ -74,11 +158,14 @@ def advance(
         creep = creep_from(y, tolerance, law)
         if creep[0] > 0.0:
             memory[STEPS] += 1.0
+            whole = seen_from(CENTRE, 0.0, law)
+            y, law = seen(y, law, whole), whole
             y = record_carried(y, end, creep, memory, times, out, law)
         elif law.friction > 0.0 and memory[SHORT] >= memory[PATIENCE]:
             y = slip_stiffly(y, memory, tolerance, end, times, out, law)
         else:
             y = slide(y, memory, tolerance, end, work, times, out, law, K, F)
+    memory[POINT], memory[SENSE] = law.point + 1.0, law.sense
     for v in range(SIZE):
         state[v] = y[v]
         if not np.isfinite(y[v]):

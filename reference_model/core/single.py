@@ -1,4 +1,4 @@
-"""One trajectory of a pin, a ring or an annulus by the core, interpreted or compiled."""
+"""One trajectory by the core, interpreted or compiled."""
 
 import functools
 import math
@@ -11,8 +11,10 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import Contact, Pin, Ring, contact_of
-from reference_model.core.forces import Law, shares
+from reference_model.contact.contact_law import Contact, Ring, contact_of
+from reference_model.contact.points import Points
+from reference_model.core.forces.contact import shares
+from reference_model.core.forces.points import around_of
 from reference_model.core.memory import (
     EVALUATIONS,
     FAILS,
@@ -21,7 +23,7 @@ from reference_model.core.memory import (
     PHASES,
     RECORDED,
     RUNS,
-    SLIPS,
+    SLOTS,
     STATUS,
     STEP,
     STEPS,
@@ -47,6 +49,12 @@ METHOD = "compiled DOP853 in stretched time, Radau IIA where it is stiff; closed
 LOCAL, LEAST = 0.05, 3e-14
 """Tolerance of a step as a share of the motion's, and its smallest value."""
 
+SUM, DENSITY = 10.0, 5.0
+"""Largest sum of the errors of steps in tolerances, and number of steps per unit of time.
+
+Errors add up over the run, or over the decay time of the dampers.
+"""
+
 SLOW_SPRINGS = 0.1
 """Scaled natural frequency below which steps become more accurate: position errors are velocity errors over it."""
 
@@ -54,10 +62,13 @@ FIRST_STEP, FEW = 0.01, 15.0
 """First explicit step in stretched time, and number of short steps before collocation is tried."""
 
 MOST_WORK = 20_000.0
-"""Work of a call in explicit steps, below a second. Python handles an interruption between two calls."""
+"""Work of a call in explicit steps. It takes less than a second, then Python can handle an interruption."""
 
 THINNEST = 1e-3
 """Smallest width of an annulus over its radius: a difference of two discs loses digits in a thinner one."""
+
+KINDS: dict[int, Kind] = {1: "slip", 2: "stick", 3: "pivot"}
+"""Names of the kinds of phases."""
 
 Core = Callable[..., None]
 
@@ -76,19 +87,19 @@ def simulate_compiled(
     tolerance: float = 1e-9,
     contact: Contact | None = None,
 ) -> Trajectory:
-    """Simulate like :func:`reference_model.simulate`, by compiled code; not for discs on single points.
+    """Simulate like :func:`reference_model.simulate`, by compiled code.
 
     Raises ``ValueError`` if the core does not know the contact.
     """
-    require_known(contact_of(system, contact))
+    require_known(system, contact_of(system, contact))
     return simulate_by(compiled_core(), system, initial_state, times, tolerance=tolerance, contact=contact)
 
 
-def require_known(contact: Contact) -> None:
+def require_known(system: System, contact: Contact) -> None:
     """Raise ``ValueError`` if the core does not contain a law."""
-    if not isinstance(contact, Pin | Ring | Annulus):
+    if isinstance(system, DiscOnDisc) and not isinstance(contact, Ring | Annulus | Points):
         raise ValueError(
-            f"contact = {contact}: compiled runs support a Ring, an Annulus and the law of the system's parameters; "
+            f"contact = {contact}: compiled runs support a Ring, an Annulus, Points and the law of the parameters; "
             "omit compiled=True"
         )
     if isinstance(contact, Annulus) and contact.pressure is not None:
@@ -100,41 +111,32 @@ def require_known(contact: Contact) -> None:
         )
 
 
-def law_of(system: System, contact: Any, unit: Units) -> Law:
-    """Return the scaled law of a pin, or a disc with this contact."""
+def law_of(system: System, contact: Any, unit: Units) -> tuple[FloatArray, FloatArray]:
+    """Return the scaled parameters and ``around`` of the law of a pin, or a disc with this contact."""
     support = Support.of(system).scaled(unit.time**2 / system.mass, unit.length)
     friction = system.friction_force / system.mass * unit.time**2 / unit.length
     hold, outer, inner, load, shaft, lag, gyration = friction, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
+    around = np.zeros(0)
     if isinstance(system, DiscOnDisc):
         gyration = math.sqrt(system.polar_inertia / system.mass)
         lag = gyration * (system.disc_speed - system.shaft_speed) / unit.speed
         shaft = system.shaft_damping / system.polar_inertia * unit.time
-        if isinstance(contact, Ring):
+        if isinstance(contact, Points):
+            around = around_of(list(contact), gyration)
+        elif isinstance(contact, Ring):
             outer = inner = contact.radius / gyration
         else:
             outer, inner = contact.outer_radius / gyration, contact.inner_radius / gyration
             load = 1.0 / ((1.0 - inner / outer) * (1.0 + inner / outer))
         gyration /= unit.length
-        if friction > 0.0:
+        if friction > 0.0 and len(around) == 0:
             hold = holding_force(friction, abs(shaft * lag), outer, inner, load)
-    return Law(
-        damping=system.damping / system.mass * unit.time,
-        stiffness=support.stiffness,
-        offset=support.offset,
-        hardening=support.hardening,
-        gap=support.stop_gap,
-        stop=support.stop_stiffness,
-        friction=friction,
-        hold=hold,
-        omega=system.disc_speed * unit.time,
-        outer=outer,
-        inner=inner,
-        load=load,
-        shaft=shaft,
-        lag=lag,
-        gyration=gyration,
-        stretch=0.5 * friction,
-    )
+    scalars = (
+        system.damping / system.mass * unit.time, support.stiffness, support.offset, support.hardening,
+        support.stop_gap, support.stop_stiffness, friction, hold, system.disc_speed * unit.time, outer, inner, load,
+        shaft, lag, gyration, 0.5 * friction,
+    )  # fmt: skip
+    return np.array(scalars), around
 
 
 def holding_force(friction: float, asked: float, outer: float, inner: float, load: float) -> float:
@@ -169,17 +171,21 @@ def simulate_by(
     law = contact_of(system, contact)
     unit = Units.of(system, start)
     frame = Frame.of(system, unit)
-    parameters = np.array(law_of(system, law, unit))
+    parameters, around = law_of(system, law, unit)
     columns = [0, 1, 5, 2, 3, 4] if isinstance(system, DiscOnDisc) else [0, 1, 2, 3]
     state = np.zeros(7)
     state[columns] = frame.unknowns(start)
     scaled = (moments - moments[0]) / unit.time
-    local = max(tolerance * LOCAL * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
-    out, memory, phases = np.zeros((len(moments), 6)), np.zeros(14), np.zeros((64, 8))
+    lasting = float(scaled[-1])
+    if system.damping > 0.0:
+        lasting = min(lasting, 2.0 * system.mass / (system.damping * unit.time))
+    share = min(LOCAL, SUM / (DENSITY * lasting)) if lasting > 0.0 else LOCAL
+    local = max(tolerance * share * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
+    out, memory, phases = np.zeros((len(moments), 6)), np.zeros(SLOTS), np.zeros((64, 8))
     memory[PATIENCE], memory[STEP], memory[RECORDED] = FEW, FIRST_STEP, 1.0
     end, count = float(scaled[-1]), StepCount(float(scaled[-1]))
     while memory[STATUS] == RUNS:
-        core(state, memory, local, end, scaled, out, phases, MOST_WORK, parameters)
+        core(state, memory, local, end, scaled, out, phases, MOST_WORK, parameters, around)
         if memory[STATUS] == FULL:
             phases = np.vstack((phases, np.zeros_like(phases)))
             memory[STATUS] = RUNS
@@ -195,12 +201,8 @@ def simulate_by(
             )
     states = frame.states(out[:, columns])
     states[0] = start
-    begun: list[tuple[Kind, float, FloatArray]] = [
-        (
-            "slip" if row[0] == SLIPS else "stick",
-            float(moments[0] + row[1] * unit.time),
-            frame.states(row[2:][columns]),
-        )
+    begun = [
+        (KINDS[int(row[0])], float(moments[0] + row[1] * unit.time), frame.states(row[2:][columns]))
         for row in phases[: int(memory[PHASES])]
     ]
     solution = Solution(

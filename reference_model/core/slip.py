@@ -3,26 +3,31 @@
 import math
 
 from reference_model.core.explicit import Unknowns, component, error_of, factor_of, interpolate, take
-from reference_model.core.forces import Law, rates
+from reference_model.core.forces.law import CENTRE, Law, seen_from
+from reference_model.core.forces.points import centre_slip, point_to_follow
+from reference_model.core.forces.rates import rates
 from reference_model.core.memory import (
     EVALUATIONS,
     FAILS,
     PATIENCE,
     SHORT,
     SIDE_OF_HOLE,
+    SIDE_OF_SPIN,
     SIDE_OF_STOP,
     SPAN,
     STATUS,
     STEP,
     STEPS,
     WORK,
+    along,
     pending,
+    seen,
     speed_of,
 )
-from reference_model.core.parts import part
+from reference_model.core.parts import inlined, part
 from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
 from reference_model.core.rest import creep_of
-from reference_model.core.surfaces import crossing, may_cross
+from reference_model.core.surfaces import crossing, grip, may_cross
 from reference_model.systems import FloatArray
 
 REST_TIME = 1e-12
@@ -40,6 +45,9 @@ LEAST_STEP = 1e-14
 SLOW, TURNED_BACK = 1e-3, 256.0
 """Slip speed below which slip must not turn back in a step, and the error assigned if it does."""
 
+COMMON_REST = 1e-11
+"""Slip speed below which all points of a disc come to rest together."""
+
 CREEP_SHARE = 0.01
 """Largest error of creep in closed form, as a share of the tolerance of a step."""
 
@@ -51,29 +59,48 @@ NOWHERE, AT_END = -1, -2
 def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
     """Return the time to rest if slip is about to end, 0 if it has ended to rounding error, -1 otherwise.
 
-    ``f`` are the rates in stretched time.
+    ``f`` are the rates in stretched time. A pivot ends at a surface instead.
     """
-    s = speed_of(y)
-    if law.friction == 0.0 or not s > 0.0:
+    s = speed_of(y, law)
+    if law.friction == 0.0 or law.sense != 0.0 or not s > 0.0:
         return -1.0
-    fall = -(f[2] * y[2] + f[3] * y[3] + f[4] * y[4]) / (s * f[6])
+    fall = -along(f, y, law) / (s * f[6])
     if fall <= 0.0:
         return -1.0
     left = s / fall
     if left * left < REST_TIME:
-        across = 0.0
-        for v in range(2, 5):
+        across, pace = 0.0, abs(law.omega) + law.shaft + 1.0
+        for v in range(2, 5 if law.point == CENTRE else 4):
             across += (f[v] / f[6] + fall * y[v] / s) ** 2
-        pace = abs(law.omega) + law.shaft + 1.0
+        if law.point != CENTRE:
+            pace += abs(y[4]) / law.gyration
         if left * math.sqrt(across) / fall + left * left * pace < REST_TIME:
+            return left
+        if len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST:
             return left
     return 0.0 if s < REVERSAL else -1.0
 
 
 @part
+def ends_together(y: Unknowns, law: Law) -> bool:
+    """Return whether a disc with a slowly slipping point comes to rest as a whole."""
+    if law.point == CENTRE or law.sense != 0.0 or abs(y[4]) > SLOW:
+        return False
+    whole = seen_from(CENTRE, 0.0, law)
+    y = seen(y, law, whole)
+    return time_left(y, rates(y[0], y[1], y[2], y[3], y[4], y[5], whole), whole) >= 0.0
+
+
+@part
 def creep_from(y: Unknowns, tolerance: float, law: Law) -> Creep:
-    """Return :func:`creep_of` of these unknowns."""
-    return creep_of(y[0], y[1], y[2], y[3], y[4], law, CREEP_SHARE * tolerance)
+    """Return :func:`creep_of` of these unknowns, seen from the centre unless the disc turns about a point."""
+    if law.point != CENTRE and law.sense == 0.0:
+        whole = seen_from(CENTRE, 0.0, law)
+        return creep_of(seen(y, law, whole), whole, CREEP_SHARE * tolerance)
+    creep = creep_of(y, law, CREEP_SHARE * tolerance)
+    if creep[0] > 0.0 and law.sense != 0.0 and grip(y, law) <= 0.0:
+        return (0.0, 0.0, 0.0, 0.0)
+    return creep
 
 
 @part
@@ -82,10 +109,18 @@ def slip_ends(y: Unknowns, f: Unknowns, memory: FloatArray, tolerance: float, la
     if law.friction == 0.0:
         return False
     return (
-        memory[SHORT] >= memory[PATIENCE]
-        or time_left(y, f, law) >= 0.0
-        or creep_from(y, tolerance, law)[0] > 0.0
-    )
+        memory[SHORT] >= memory[PATIENCE] or time_left(y, f, law) >= 0.0 or creep_from(y, tolerance, law)[0] > 0.0
+        or point_for(y, law) != law.point or ends_together(y, law)
+    )  # fmt: skip
+
+
+@inlined
+def point_for(y: Unknowns, law: Law) -> int:
+    """Return the contact point whose slip should be an unknown, or the centre."""
+    if len(law.around) == 0 or law.sense != 0.0:
+        return law.point
+    ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
+    return point_to_follow(ux, uy, y[4], y[5], law)
 
 
 @part
@@ -100,24 +135,24 @@ def first_event(
     F: FloatArray,
 ) -> tuple[float, int]:
     """Return the share of a step up to the first crossing of a surface or the end of the run, and which it is."""
-    crosses = new[6] > end
-    for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
-        crosses = crosses or may_cross(which, memory[which], y, new, law)
-    if not crosses:
+    reached = new[6] > end
+    for which in range(SIDE_OF_STOP, SIDE_OF_SPIN + 1):
+        reached = reached or may_cross(which, memory[which], y, new, law)
+    if not reached:
         return 1.0, NOWHERE
     place, event = 1.0, NOWHERE
-    last = rates(new[0], new[1], new[2], new[3], new[4], law)
+    last = rates(new[0], new[1], new[2], new[3], new[4], new[5], law)
     interpolate(y, new, last, h, law, K, F)
     memory[EVALUATIONS] += 4.0
     if new[6] > end:
         place, event = (end - y[6]) / (new[6] - y[6]), AT_END
         for _ in range(20):
-            reached, pace = component(F, place, 6)
-            change = (end - reached) / pace if pace > 0.0 else 0.0
+            moment, pace = component(F, place, 6)
+            change = (end - moment) / pace if pace > 0.0 else 0.0
             place = min(max(place + change, 0.0), 1.0)
             if abs(change) < 1e-15:
                 break
-    for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
+    for which in range(SIDE_OF_STOP, SIDE_OF_SPIN + 1):
         if may_cross(which, memory[which], y, new, law):
             share = crossing(which, memory[which], y, F, law)
             if share < place:
@@ -131,7 +166,7 @@ def slide(
     out: FloatArray, law: Law, K: FloatArray, F: FloatArray,
 ) -> Unknowns:  # fmt: skip
     """Take explicit steps until slip ends or is stiff, or the work of this call is done."""
-    f = rates(y[0], y[1], y[2], y[3], y[4], law)
+    f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
     while True:
         h, most, event = memory[STEP], 10.0, NOWHERE
         usual = h
@@ -142,7 +177,7 @@ def slide(
             if event != NOWHERE:
                 break
             error = h * error_of(y, new, third, fifth, tolerance, law)
-            if new[2] * y[2] + new[3] * y[3] + new[4] * y[4] < 0.0 and speed_of(y) < SLOW:
+            if law.sense == 0.0 and along(new, y, law) < 0.0 and speed_of(y, law) < SLOW:
                 error = max(error, TURNED_BACK)
             if not error <= 1.0:
                 h *= factor_of(error)
@@ -156,7 +191,7 @@ def slide(
             if event == NOWHERE:
                 break
             h *= place
-        last = rates(new[0], new[1], new[2], new[3], new[4], law)
+        last = rates(new[0], new[1], new[2], new[3], new[4], new[5], law)
         memory[EVALUATIONS] += 1.0
         if event == AT_END:
             late = (end - new[6]) / last[6]
@@ -170,15 +205,20 @@ def slide(
             interpolate(y, new, last, h, law, K, F)
             memory[EVALUATIONS] += 4.0
             if is_accurate(h, F, tolerance, law):
-                record_step(y, new, F, memory, times, out)
+                record_step(y, new, F, memory, times, out, law)
             else:
                 record_by_steps(y, f, new, h, memory, times, out, law, K)
         memory[STEP] = usual
         memory[STEPS] += 1.0
-        change = math.sqrt((new[2] - y[2]) ** 2 + (new[3] - y[3]) ** 2 + (new[4] - y[4]) ** 2)
+        apart = (0.0, 0.0, new[2] - y[2], new[3] - y[3], new[4] - y[4], 0.0, 0.0)
         memory[SPAN] = new[6] - y[6]
-        short = memory[SPAN] + change / (speed_of(new) + 1e-300) < USUAL
-        memory[SHORT] = max(0.0, memory[SHORT] + (1.0 if short else -1.0))
+        short = memory[SPAN] + speed_of(apart, law) / (speed_of(new, law) + 1e-300) < USUAL
+        memory[SHORT] = max(0.0, memory[SHORT] + (1.0 if short and law.sense == 0.0 else -1.0))
         y, f = new, last
-        if y[6] >= end or memory[WORK] >= most_work or slip_ends(y, f, memory, tolerance, law):
+        if (
+            y[6] >= end
+            or memory[WORK] >= most_work
+            or event > SIDE_OF_HOLE
+            or slip_ends(y, f, memory, tolerance, law)
+        ):
             return y

@@ -6,7 +6,9 @@ import numpy as np
 
 from reference_model.core.collocation import at, error_of, series, solve
 from reference_model.core.explicit import Unknowns
-from reference_model.core.forces import Law, growth
+from reference_model.core.forces.law import CENTRE, Law, seen_from
+from reference_model.core.forces.points import centre_slip
+from reference_model.core.forces.rates import growth
 from reference_model.core.memory import (
     EVALUATIONS,
     FAILS,
@@ -18,6 +20,7 @@ from reference_model.core.memory import (
     STEP,
     STEPS,
     WORK,
+    along,
     carried,
     pending,
     put,
@@ -25,8 +28,8 @@ from reference_model.core.memory import (
 )
 from reference_model.core.parts import part
 from reference_model.core.recording import record_series
-from reference_model.core.rest import begun, direction
-from reference_model.core.slip import creep_from
+from reference_model.core.rest import begun, drift
+from reference_model.core.slip import creep_from, point_for
 from reference_model.core.surfaces import crossed_any
 from reference_model.numerics.collocation import NODES, POINTS
 from reference_model.systems import FloatArray
@@ -43,6 +46,9 @@ COST = 4.0
 WORK_OF_STEP = 50.0
 """Its work in explicit steps, for the length of a call."""
 
+FAST = 2.0 / 3.0
+"""Pace of stretched time where slip is so fast that friction turns it at the rate 1."""
+
 RISING = 10.0
 """Rate of relaxation times the step below which an explicit method is as efficient."""
 
@@ -54,20 +60,20 @@ FIRST_STEP = 0.1
 
 
 @part
-def five(y: Unknowns) -> FloatArray:
-    """Return x, y, ux, uy and r, shape (5,)."""
-    result = np.empty(5)
-    for v in range(5):
+def six(y: Unknowns) -> FloatArray:
+    """Return the unknowns without the time, shape (6,)."""
+    result = np.empty(6)
+    for v in range(6):
         result[v] = y[v]
     return result
 
 
 @part
 def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
-    """Return the extrapolation of a step of length ``before`` to the nodes of the next one, shape (NODES, 5)."""
-    guess = np.empty((NODES, 5))
+    """Return the extrapolation of a step of length ``before`` to the nodes of the next one, shape (NODES, 6)."""
+    guess = np.empty((NODES, 6))
     for i in range(NODES):
-        guess[i] = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)[:5]
+        guess[i] = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)
     return guess
 
 
@@ -82,31 +88,33 @@ def slip_stiffly(
     law: Law,
 ) -> Unknowns:
     """Take steps by collocation while they pay."""
-    first_speed, explicit = speed_of(y), memory[SPAN]
+    first_speed, explicit = speed_of(y, law), memory[SPAN]
     h, known, coefficients = 4.0 * explicit, False, np.zeros((NODES + 1, 6))
     before = h
     memory[SHORT] = 0.0
     for _ in range(MOST_STEPS):
         if y[6] >= end:
             break
-        start = five(y)
+        start = six(y)
         h = min(h, end - y[6])
         if known:
             guess = ahead(coefficients, h, before)
         else:
-            guess = np.empty((NODES, 5))
+            guess = np.empty((NODES, 6))
+            ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
             for i in range(NODES):
                 place = 0.5 * h * (POINTS[i] + 1.0)
                 guess[i] = start
-                guess[i, 0] += place * (y[2] - law.omega * y[1])
-                guess[i, 1] += place * (y[3] + law.omega * y[0])
+                guess[i, 0] += place * (ux - law.omega * y[1])
+                guess[i, 1] += place * (uy + law.omega * y[0])
+                guess[i, 5] += place * (law.omega + y[4] / law.gyration)
         memory[WORK] += WORK_OF_STEP
         memory[EVALUATIONS] += 40.0
         solved, values = solve(start, h, guess, law)
         error, found = math.inf, coefficients
         if solved:
-            found = series(start, y[5], h, values, law)
-            error = error_of(found, tolerance)
+            found = series(start, h, values, law)
+            error = error_of(found, tolerance, law)
         if not error <= 1.0:
             h *= max(0.1, 0.8 * error**-0.125) if solved else 0.3
             if h < explicit:
@@ -117,15 +125,20 @@ def slip_stiffly(
         coefficients, known, before = found, True, h
         new = at(coefficients, 1.0)
         until = y[6] + h if h < end - y[6] else end
-        record_series(y[6], h, until, coefficients, memory, times, out)
+        record_series(y[6], h, until, coefficients, memory, times, out, law)
         y = (new[0], new[1], new[2], new[3], new[4], new[5], until)
-        s = speed_of(y)
+        s = speed_of(y, law)
         if crossed_any(y, memory, law):
             return y
-        a = growth(y[0], y[1], y[2], y[3], y[4], law)
-        fall = -(a[0] * y[2] + a[1] * y[3] + a[2] * y[4]) / s
+        a = growth(y[0], y[1], y[2], y[3], y[4], y[5], law)
+        fall = -along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) / s
         h *= min(2.0, 0.8 * max(error, 1e-16) ** -0.125)
-        if s > law.friction or (fall > 0.0 and s < fall * h) or creep_from(y, tolerance, law)[0] > 0.0:
+        if (
+            a[3] > FAST
+            or point_for(y, law) != law.point
+            or (fall > 0.0 and s < fall * h)
+            or creep_from(y, tolerance, law)[0] > 0.0
+        ):
             return y
         if h < COST * explicit * s / first_speed:
             memory[PATIENCE] *= 2.0
@@ -135,44 +148,42 @@ def slip_stiffly(
 
 @part
 def begin_slip(
-    y: Unknowns,
-    memory: FloatArray,
-    tolerance: float,
-    end: float,
-    times: FloatArray,
-    out: FloatArray,
-    law: Law,
-) -> Unknowns:
-    """Follow slip from rest until an explicit method can continue."""
-    n = direction(y[0], y[1], law)
-    first, gain, tx, ty, tr = begun(y[0], y[1], n, law)
-    if first > 0.0 > gain and -2.0 * first / gain < BRIEF:
-        return slip_briefly(y, n, first, gain, memory, end, times, out, law)
-    h, start = FIRST_SPAN, five(y)
-    known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
+    y: Unknowns, n: tuple[float, float, float], memory: FloatArray, tolerance: float, end: float, times: FloatArray,
+    out: FloatArray, law: Law,
+) -> Unknowns:  # fmt: skip
+    """Follow slip from rest in the direction ``n`` until an explicit method can continue."""
+    first, gain, tx, ty, tr = begun(y, n, law)
     memory[STEP], memory[SHORT] = FIRST_STEP, 0.0
+    if first > 0.0 > gain and -2.0 * first / gain < BRIEF and at_rest(y, law):
+        return slip_briefly(y, n, first, gain, memory, end, times, out, law)
+    if law.sense != 0.0:
+        return y
+    x_drift, y_drift, r_drift, turn = drift(y, law)
+    h, start = FIRST_SPAN, six(y)
+    known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
     for _ in range(MOST_STEPS):
         if y[6] >= end:
             break
         if known:
             guess = ahead(coefficients, h, before)
         else:
-            guess = np.empty((NODES, 5))
+            guess = np.empty((NODES, 6))
             for i in range(NODES):
                 place = 0.5 * h * (POINTS[i] + 1.0)
                 s = (first + 0.5 * gain * place) * place
-                guess[i, 0] = start[0] - place * law.omega * start[1]
-                guess[i, 1] = start[1] + place * law.omega * start[0]
+                guess[i, 0] = start[0] + place * x_drift
+                guess[i, 1] = start[1] + place * y_drift
+                guess[i, 5] = start[5] + place * turn
                 guess[i, 2] = s * (n[0] + place * tx)
                 guess[i, 3] = s * (n[1] + place * ty)
-                guess[i, 4] = s * (n[2] + place * tr)
+                guess[i, 4] = s * (n[2] + place * tr) if law.point == CENTRE else start[4] + place * r_drift
         memory[WORK] += WORK_OF_STEP
         memory[EVALUATIONS] += 40.0
         solved, values = solve(start, h, guess, law)
         error, found = math.inf, coefficients
         if solved:
-            found = series(start, y[5], h, values, law)
-            error = error_of(found, 0.1 * tolerance)
+            found = series(start, h, values, law)
+            error = error_of(found, 0.1 * tolerance, law)
         if not error <= 1.0:
             h *= max(0.25, 0.8 * error**-0.125) if solved else 0.25
             if h < LEAST_SPAN:
@@ -183,15 +194,21 @@ def begin_slip(
         coefficients, known, before = found, True, h
         until = min(y[6] + h, end)
         new = at(coefficients, (until - y[6]) / h)
-        record_series(y[6], h, until, coefficients, memory, times, out)
+        record_series(y[6], h, until, coefficients, memory, times, out, law)
         y = (new[0], new[1], new[2], new[3], new[4], new[5], until)
-        start = five(y)
-        a = growth(y[0], y[1], y[2], y[3], y[4], law)
-        falling = a[0] * y[2] + a[1] * y[3] + a[2] * y[4] <= 0.0
-        if falling or law.friction * h < RISING * speed_of(y):
+        start = six(y)
+        a = growth(y[0], y[1], y[2], y[3], y[4], y[5], law)
+        falling = along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) <= 0.0
+        if falling or 2.0 * (1.0 - a[3]) * h < RISING * a[3]:
             break
         h *= min(4.0, 0.8 * max(error, 1e-16) ** -0.125)
     return y
+
+
+@part
+def at_rest(y: Unknowns, law: Law) -> bool:
+    """Return whether the disc rests as a whole, if the slip is zero."""
+    return law.point == CENTRE or y[4] == 0.0
 
 
 @part
@@ -201,10 +218,16 @@ def slip_briefly(
 ) -> Unknowns:  # fmt: skip
     """Follow slip s = first·t + ½·gain·t² along ``n`` to its end, where the body rests again."""
     last = -2.0 * first / gain
-    moved = (y[0], y[1], n[0], n[1], n[2], y[5], y[6])
+    ux, uy = centre_slip(n[0], n[1], n[2], y[5], law)
+    law = seen_from(CENTRE, 0.0, law)
+    moved = (y[0], y[1], ux, uy, n[2], y[5], y[6])
     until = min(y[6] + last, end)
     while pending(memory, times, until):
-        put(out[int(memory[RECORDED])], briefly(moved, times[int(memory[RECORDED])] - y[6], first, gain, law))
+        put(
+            out[int(memory[RECORDED])],
+            briefly(moved, times[int(memory[RECORDED])] - y[6], first, gain, law),
+            law,
+        )
         memory[RECORDED] += 1.0
     memory[WORK] += 1.0
     memory[STEPS] += 1.0

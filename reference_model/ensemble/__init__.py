@@ -1,10 +1,9 @@
-"""Compiled simulation: end states of many trajectories, or one disc on points phase by phase.
+"""Compiled simulation of the end states of many trajectories.
 
 - ``simulate``: :func:`simulate_ensemble`; ``end_states``: its results;
 - ``core``: lanes of trajectories in vector registers, forces, explicit and implicit steps;
 - ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``), and ``kernel`` with
-  ``driver``, which combine them;
-- ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)`` of a disc on points.
+  ``driver``, which combine them.
 """
 
 from reference_model.ensemble.end_states import EndState, Ensemble

@@ -95,20 +95,15 @@ def require_supported(system: System) -> None:
     if not system.linear_support:
         name = next(name for name in ("hardening", "stop_stiffness") if getattr(system, name) != 0.0)
         raise ValueError(
-            f"{name} = {getattr(system, name):g}: ensembles and compiled discs on points need a linear support, "
-            "because they compute release and the surroundings of an equilibrium in closed form; set it to 0 or "
-            "simulate single motions"
+            f"{name} = {getattr(system, name):g}: ensembles need a linear support, because they compute release and "
+            "the surroundings of an equilibrium in closed form; set it to 0 or simulate single motions"
         )
-    if not is_supported(system):
+    points = getattr(system, "contact_points", None) or 0
+    if points > MOST_POINTS:
         raise ValueError(
-            f"contact_points = {getattr(system, 'contact_points', None)}: compiled code supports up to {MOST_POINTS}"
-            "; for more use the continuous ring, contact_points = None"
+            f"contact_points = {points}: ensembles support up to {MOST_POINTS}; for more use the continuous ring, "
+            "contact_points = None"
         )
-
-
-def is_supported(system: System) -> bool:
-    """Return whether the kernels of ensembles support a system."""
-    return system.linear_support and (getattr(system, "contact_points", None) or 0) <= MOST_POINTS
 
 
 def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:

@@ -1,8 +1,7 @@
 """Trajectories in the form of compiled code, and their distribution to threads."""
 
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import NamedTuple, TypeVar
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,23 +9,8 @@ from numpy.typing import NDArray
 from reference_model.numerics.threads import Threads
 from reference_model.systems import FloatArray, PinOnDisc, System
 
-Value = TypeVar("Value")
-
 CHUNK = 512
 """Number of trajectories that a thread takes at a time: lanes are rarely empty, and threads end together."""
-
-LENGTH, RATE, STEP, SHORT, SPAN = range(5)
-"""Indices into the pace of a trajectory. A continuation with this pace takes the original's steps.
-
-It contains the unit of length in m, the inverse unit of time in 1/s, the step, the number of recent short steps, and
-the length of an implicit step.
-"""
-
-PACE_SIZE = SPAN + 1
-
-ENDLESS = 2**62
-"""More rounds than anybody can wait for."""
-
 
 OF_PIN = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
 OF_DISC = (*OF_PIN, "polar_inertia", "contact_radius", "shaft_damping", "shaft_speed")
@@ -36,16 +20,14 @@ OF_DISC = (*OF_PIN, "polar_inertia", "contact_radius", "shaft_damping", "shaft_s
 class Task(NamedTuple):
     """Trajectories to simulate; each array has a row per trajectory, or one for all.
 
-    ``parameters`` are in the order of OF_PIN or OF_DISC, ``starts`` (1 or n, 4 or 6) in SI units, ``durations``
-    in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros. Runs end after ``most_rounds``
-    (1,), steps of all lanes, which another thread may set to 0.
+    ``parameters`` are in the order of OF_PIN or OF_DISC, ``starts`` (1 or n, 4 or 6) in SI units, and ``durations``
+    in s. Runs end early if another thread sets ``stop`` (1,).
     """
 
     parameters: FloatArray
     starts: FloatArray
     durations: FloatArray
-    paces: FloatArray = np.zeros((1, PACE_SIZE))
-    most_rounds: NDArray[np.int64] = np.full(1, ENDLESS)
+    stop: NDArray[np.bool_] = np.zeros(1, np.bool_)
 
     @property
     def size(self) -> int:
@@ -63,22 +45,15 @@ def parameter_table(system: System, varied: Mapping[str, FloatArray] | None = No
 def in_chunks(run: Callable[..., None], task: Task, threads: int) -> None:
     """Call ``run(task, first, last)``, which must release the interpreter lock, for all trajectories of ``task``.
 
-    If ``threads`` is 0, call it once, in the thread of the caller.
+    An exception such as ``KeyboardInterrupt`` stops all threads.
     """
-    if threads == 0:
-        run(task, 0, task.size)
-        return
+    task = task._replace(stop=np.zeros(1, np.bool_))
     firsts = range(0, task.size, CHUNK)
-    calls = [partial(run, first=first, last=min(first + CHUNK, task.size)) for first in firsts]
-    in_threads(calls, task, min(threads, len(calls)))
-
-
-def in_threads(calls: Sequence[Callable[[Task], Value]], task: Task, threads: int) -> list[Value]:
-    """Return the result of each call with ``task``; an exception such as ``KeyboardInterrupt`` stops all at once."""
-    task = task._replace(most_rounds=np.full(1, ENDLESS))
-    with Threads(threads) as pool:
+    with Threads(min(threads, len(firsts))) as pool:
         try:
-            return [pool.result(one) for one in [pool.submit(call, task) for call in calls]]
+            running = [pool.submit(run, task, first, min(first + CHUNK, task.size)) for first in firsts]
+            for one in running:
+                pool.result(one)
         except BaseException:
-            task.most_rounds[0] = 0
+            task.stop[0] = True
             raise

@@ -27,15 +27,7 @@ OF_ALL_STEPS = 30.0
 
 of_each_kind = pytest.mark.parametrize(
     ("kind", "support", "way"),
-    [
-        (kind, support, way)
-        for kind in KINDS
-        for support in SUPPORTS
-        for way in WAYS
-        if way == "interpreted"
-        or support == "linear"
-        or kind != "points"  # compiled code knows points on linear supports only
-    ],
+    [(kind, support, way) for kind in KINDS for support in SUPPORTS for way in WAYS],
 )
 
 

@@ -49,8 +49,7 @@ class Memory(Record):
     """Scalar data of a lane.
 
     ``length`` and ``rate`` are the unit of length in m and the inverse unit of time in 1/s, ``tick`` is the time
-    between checks, ``span`` the proposed implicit step. ``checkpoints`` have been taken, and ``passed`` of the
-    requested times passed.
+    between checks, ``span`` the proposed implicit step.
     """
 
     number: int
@@ -61,8 +60,6 @@ class Memory(Record):
     tick: float
     window: Window
     span: float
-    checkpoints: int
-    passed: int
 
 
 @written_out
@@ -83,7 +80,7 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
-    After ``task.most_rounds`` the run ends with incomplete results, and sets this number to 0.
+    The run ends with incomplete results if another thread sets ``task.stop``.
 
     ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), their scalar data; both are zeros.
 
@@ -94,7 +91,7 @@ def run(
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
-    active = rounds = 0
+    active = 0
     while True:
         # Again in every round, because the lanes exist only while something refers to the array.
         lanes = record[0]
@@ -113,14 +110,7 @@ def run(
                 busy[lane] = True
                 active += 1
                 number += 1
-        rounds += 1
-        if rounds > task.most_rounds[0]:
-            task.most_rounds[0] = 0
-            for lane in range(LANES):
-                if busy[lane]:
-                    store(lanes, memory[lane], lane, results)
-            active = 0
-        if active == 0:
+        if active == 0 or task.stop[0]:
             break
         _accept(lanes)
         if last - first == 1:

@@ -1,4 +1,4 @@
-"""Ensembles of discs, and single discs on points; the plain reference follows points that rest until all slip."""
+"""Ensembles of discs; the plain reference follows points that rest until all slip."""
 
 import math
 from collections.abc import Iterator
@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.core.checkpoints import Checkpoints, empty_checkpoints
 from reference_model.ensemble.core.lanes import row_of
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.disc.kernel import run_points, run_rings
 from reference_model.ensemble.disc.lanes import DiscSettings
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
 from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Results
-from reference_model.ensemble.recording import ROUNDED, Recording
-from reference_model.ensemble.task import OF_DISC, Task, in_chunks, parameter_table
+from reference_model.ensemble.task import OF_DISC, Task, in_chunks
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -24,6 +22,9 @@ from reference_model.trajectory import Trajectory
 
 LEAST_SLIP = 0.1
 """Duration of slip of all points before compiled code continues, in turns of the master disc or free centre."""
+
+ROUNDED = 1e-12
+"""Rounding error of times, as a share of the duration."""
 
 
 def simulate_discs(
@@ -33,35 +34,13 @@ def simulate_discs(
     return _run_through(disc, task, settings, tolerance, threads)
 
 
-def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
-    table = parameter_table(disc)
-    settings = _settings(disc, tolerance, False, no_regions())
-
-    def one(task: Task, checkpoints: Checkpoints) -> Results:
-        return _run(task, settings._replace(checkpoints=checkpoints))
-
-    def many(task: Task, _: Checkpoints) -> Results:
-        return _run_through(disc, task, settings, tolerance)
-
-    t = 0.0
-    while t < recording.duration:
-        end = recording.follow(table, one, many, state, t)
-        t, state = t + float(end.times[0]), end.states[0]
-        if end.ends[0] != HANDED_OVER:
-            break
-        for motion, _ in _through_rest(disc, state, t, recording.duration, tolerance, recording.times):
-            recording.take(motion)
-            t, state = float(motion.times[-1]), motion.at_end
-
-
 def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDArray[Any]) -> DiscSettings:
     points = disc.contact_points or 0
     around = tuple(f(2.0 * math.pi * i / points) for i in range(points) for f in (math.cos, math.sin))
-    nowhere = empty_checkpoints(0, disc.state_size)
-    return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
+    return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions)
 
 
-def _run(task: Task, settings: DiscSettings, threads: int = 0) -> Results:
+def _run(task: Task, settings: DiscSettings, threads: int) -> Results:
     kernel = run_points if settings.around else run_rings
     results = Results.empty(task.size, DiscOnDisc.state_size)
 
@@ -73,7 +52,7 @@ def _run(task: Task, settings: DiscSettings, threads: int = 0) -> Results:
 
 
 def _run_through(
-    disc: DiscOnDisc, task: Task, settings: DiscSettings, tolerance: float, threads: int = 0
+    disc: DiscOnDisc, task: Task, settings: DiscSettings, tolerance: float, threads: int
 ) -> Results:
     results = _run(task, settings, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
@@ -116,12 +95,7 @@ def _continue_until_slip(
 
 
 def _through_rest(
-    disc: DiscOnDisc,
-    state: FloatArray,
-    t: float,
-    duration: float,
-    tolerance: float,
-    times: FloatArray | tuple[()] = (),
+    disc: DiscOnDisc, state: FloatArray, t: float, duration: float, tolerance: float
 ) -> Iterator[tuple[Trajectory, bool]]:
     """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
 
@@ -129,12 +103,11 @@ def _through_rest(
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration
-    requested, span = np.asarray(times), (1.0 + 2.0 * LEAST_SLIP) * turn
+    span = (1.0 + 2.0 * LEAST_SLIP) * turn
     while t < duration:
         end = t + span if duration - (t + span) > ROUNDED * duration else duration
-        inside = requested[(requested > t) & (requested < end)]
         motion = simulate_with(
-            Thresholds(), disc, state, [t, *inside, end], tolerance=tolerance, slipping=LEAST_SLIP * turn
+            Thresholds(), disc, state, [t, end], tolerance=tolerance, slipping=LEAST_SLIP * turn
         )
         t, state, last = float(motion.times[-1]), motion.at_end, motion.phases[-1]
         stuck = last.kind == "stick" and last.end - last.start >= turn

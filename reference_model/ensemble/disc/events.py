@@ -20,7 +20,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from reference_model.ensemble.core.checkpoints import next_requested, recorded
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import EXTREME, IS_DUE, LOST, REST, RIGHTMOST, STIFF
 from reference_model.ensemble.core.laws import DiscLaw
@@ -68,7 +67,6 @@ from reference_model.ensemble.disc.lanes import (
     last_step,
     law_of,
     rates_at,
-    record_requested,
     state_at,
 )
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
@@ -194,10 +192,6 @@ def check_due(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings, attracts: Attracts
 ) -> bool:
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
-    if recorded(settings):
-        record_requested(lanes, lanes.now, memory, lane, t, settings)
-        lanes.due[lane] = next_requested(memory, settings)
-        return False
     state, k = state_at(lanes.trial, lane), rates_at(lanes.trial, lane)
     velocity = (1.0 / k.time) * complex(k.x, k.y)
     place = complex(state.x, state.y)

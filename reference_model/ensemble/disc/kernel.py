@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from reference_model.ensemble.core.checkpoints import SLIPS, next_requested, recorded
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, DiscLaw, units
@@ -24,13 +23,12 @@ from reference_model.ensemble.disc.lanes import (
     advance_with,
     put_slipping,
     put_state,
-    take_checkpoint,
 )
 from reference_model.ensemble.disc.rest import points_rest, points_slow, ring_rests, ring_slow
 from reference_model.ensemble.disc.slip import no_edge, points_rates, ring_edge, ring_rates
 from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.end_states import Results
-from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
+from reference_model.ensemble.task import Task
 from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(DiscLanes), layout(DiscMemory)
@@ -76,10 +74,6 @@ def load_with(
     x, y, angle, vx, vy, spin = row_of(task.starts, number)
     k, decay, g = math.sqrt(stiffness / mass), max(damping / mass, shaft / inertia), force / mass
     length, rate = units(k, decay, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
-    pace = row_of(task.paces, number)
-    goes_on = pace[RATE] > 0.0
-    if goes_on:
-        length, rate = pace[LENGTH], pace[RATE]
     law = _scaled_law(parameters, settings.around, length, rate)
     clear(memory)
     duration = float(row_of(task.durations, number)) * rate
@@ -87,8 +81,6 @@ def load_with(
     memory.tick = 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
     put(lanes.law, lane, law)
     lanes.tolerance[lane], lanes.duration[lane], lanes.due[lane] = settings.tolerance, duration, memory.tick
-    if recorded(settings):
-        lanes.due[lane] = next_requested(memory, settings)
     lanes.watch[lane] = RADII if law.offset == 0.0 else TURNS
     lanes.usual[lane] = lanes.flag[lane] = lanes.steps[lane] = lanes.short[lane] = 0.0
 
@@ -100,12 +92,9 @@ def load_with(
     if abs(spin - omega) <= ROUNDING_OF_SLIP * abs(omega):
         r = 0.0
     put(lanes.trial.state, lane, (x / length, y / length, u.real, u.imag, r, angle, 0.0, 0.0))
-    take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
     if u == 0j and r == 0.0 and force > 0.0:
         return bool(rest(lanes, memory, lane, law, settings))
     put_slipping(lanes, lane, law, rates)
-    if goes_on:
-        lanes.trial.step[lane], lanes.short[lane], memory.span = pace[STEP], pace[SHORT], pace[SPAN]
     return bool(duration <= 0.0)
 
 

@@ -6,7 +6,6 @@ from typing import Annotated, Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from reference_model.ensemble.core.checkpoints import ON_THE_WAY, Checkpoints, mark_requested
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
@@ -317,32 +316,12 @@ class DiscMemory(Memory):
 
 
 class DiscSettings(NamedTuple):
-    """Settings for scalar code; ``checkpoints`` are those of a single trajectory, empty if not requested."""
+    """Settings for scalar code."""
 
     tolerance: float
     early: bool
     around: tuple[float, ...]
     regions: NDArray[Any]
-    checkpoints: Checkpoints
-
-
-@scalar
-def record_requested(
-    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, settings: DiscSettings
-) -> None:
-    if mark_requested(lanes, moment, memory, lane, until, settings):
-        take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, settings)
-
-
-@scalar
-def take_checkpoint(
-    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, settings: DiscSettings
-) -> None:
-    if memory.checkpoints < settings.checkpoints.size:
-        checkpoint = settings.checkpoints[memory.checkpoints]
-        memory.checkpoints += 1
-        checkpoint.kind, checkpoint.time = kind, moment.state.time[lane] / memory.rate
-        put_state(checkpoint.state, lanes, moment, memory, lane)
 
 
 @scalar

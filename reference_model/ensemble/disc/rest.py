@@ -6,7 +6,6 @@ return whether the trajectory ends.
 
 import math
 
-from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, recorded
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import SPENT_SHARE, DiscLaw, creeps_by_turns, sticking_radius
 from reference_model.ensemble.core.records import fill, put
@@ -25,10 +24,8 @@ from reference_model.ensemble.disc.lanes import (
     comes_to_rest,
     put_slipping,
     rates_at,
-    record_requested,
     slip_left,
     state_at,
-    take_checkpoint,
 )
 from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_rates, stuck_for
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
@@ -73,8 +70,6 @@ def _creeps_out(
         delay = lanes.duration[lane] - t
         turn = law.disc_speed * delay
         z *= complex(math.cos(turn), math.sin(turn))
-        if recorded(settings):
-            record_requested(lanes, lanes.trial, memory, lane, t + delay, settings)
         put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle + turn, t + delay, way))
     return True
 
@@ -124,8 +119,6 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
         fill(memory.found, Measures(abs(z), abs(z), 0.0))
         if settings.early:
             return True
-    if held > 0.0:
-        take_checkpoint(lanes, lanes.trial, memory, lane, STICKS, settings)
     delay = min(held, end - t)
     turn = law.disc_speed * delay
     z *= complex(math.cos(turn), math.sin(turn))
@@ -133,8 +126,6 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
     put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle, t, way))
     if t >= end - AT_END:
         return True
-    if held > 0.0:
-        take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
         # The centre slips no farther than an equally held pin, and creeps inward where such a pin does.
         centre, last = centre_of(law, friction), memory.peaks.values[0]

@@ -29,7 +29,7 @@ from reference_model.ensemble.pin.lanes import (
     put_state,
     slip_at,
 )
-from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
+from reference_model.ensemble.task import Task
 from reference_model.systems import PinOnDisc
 from reference_model.trajectory import MOST_AHEAD
 
@@ -52,10 +52,6 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
     duration = float(row_of(task.durations, number))
     k2, c, g = stiffness / mass, damping / mass, force / mass
     length, rate = units(math.sqrt(k2), c, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
-    pace = row_of(task.paces, number)
-    goes_on = pace[RATE] > 0.0
-    if goes_on:
-        length, rate = pace[LENGTH], pace[RATE]
     speed = length * rate
 
     clear(memory)
@@ -88,8 +84,6 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
     put_slipping(lanes, lane, z, w, law)
     if abs(w) < SLOWNESS * friction < SLOWNESS * abs(pull(z, w, law)):
         lanes.short[lane] = MANY
-    if goes_on:
-        lanes.trial.step[lane], lanes.short[lane], memory.span = pace[STEP], pace[SHORT], pace[SPAN]
     if memory.level == math.inf:
         memory.end = SELF_CENTRED
         keep(memory, 0.0, 0.0, 0.0)

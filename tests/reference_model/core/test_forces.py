@@ -6,7 +6,7 @@ import pytest
 from mpmath import mp
 
 from reference_model import Annulus
-from reference_model.core.forces import disc, shares
+from reference_model.core.forces.contact import disc, shares
 
 
 def of_disc(slip, rim):
