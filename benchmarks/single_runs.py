@@ -7,20 +7,17 @@ Measured on a core with AVX-512 beside other work:
 
 | motion | requested times | plain, ms | compiled, ms | ratio |
 |---|---|---|---|---|
-| Fig. 5, sticks nine times, to t = 500 s | 2 | 120 | 2.28 | 52 |
-| | 501 | 156 | 2.42 | 65 |
-| | 5,001 | 241 | 3.49 | 69 |
-| Fig. 11, ring, to t = 100 s | 2 | 10.2 | 0.36 | 29 |
-| | 501 | 19.8 | 0.47 | 42 |
-| | 5,001 | 21.7 | 0.81 | 27 |
-| the same with a hard stop | 5,001 | 21.7 | 0.84 | 26 |
-| Fig. 11, six points, to t = 100 s | 2 | 12.1 | 1.34 | 9 |
-| | 501 | 22.1 | 1.91 | 12 |
-| | 5,001 | 24.4 | 9.48 | 3 |
-| the same, starting with a point at rest | 501 | 123 | 27.9 | 4 |
-
-A step costs about 1 µs, and a requested time 0.1 to 0.3 µs, or 2 µs for points, whose kernel starts again from
-checkpoints. The last row is slow because the plain reference takes over when a point rests.
+| Fig. 5, sticks nine times, to t = 500 s | 2 | 125 | 2.51 | 50 |
+| | 501 | 141 | 2.84 | 50 |
+| | 5,001 | 300 | 4.04 | 74 |
+| Fig. 11, ring, to t = 100 s | 2 | 10.8 | 0.38 | 28 |
+| | 501 | 20.7 | 0.49 | 42 |
+| | 5,001 | 20.3 | 0.82 | 25 |
+| the same with a hard stop | 5,001 | 25.5 | 0.86 | 30 |
+| Fig. 11, six points, to t = 100 s | 2 | 12.1 | 1.21 | 10 |
+| | 501 | 31.6 | 1.45 | 22 |
+| | 5,001 | 22.2 | 1.28 | 17 |
+| the same, starting with a point at rest | 501 | 224 | 3.75 | 60 |
 """
 
 from __future__ import annotations

@@ -43,4 +43,9 @@ def compiled(function: Callable[..., None]) -> "CompiledOnce":
     for each in PARTS:
         inline = {"forceinline": True, "_nrt": False} if each in INLINED else {}
         register_jitable(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **inline)(each)
-    return CompiledOnce(function, Path(__file__).parent, digest_of_text([*PARTS, *INLINED, function, compiled]))
+    parts = sorted([*PARTS, *INLINED], key=_name_of)  # independent of the order of imports
+    return CompiledOnce(function, Path(__file__).parent, digest_of_text([*parts, function, compiled]))
+
+
+def _name_of(function: Callable[..., Any]) -> tuple[str, str]:
+    return str(function.__module__), function.__name__

@@ -2,6 +2,8 @@
 
 import _thread
 import cmath
+import subprocess
+import sys
 import threading
 import time
 from dataclasses import replace
@@ -130,3 +132,18 @@ def test_default_run_without_a_contact_of_its_own_is_compiled():
         for contact in (None, Ring(0.1))
     ]
     assert [method.startswith("compiled") for method in methods] == [True, False]
+
+
+def test_digest_of_compiled_code_does_not_depend_on_the_order_of_imports():
+    digests = {
+        subprocess.run(
+            [
+                sys.executable, "-c",
+                f"import reference_model.core.{first}; from reference_model.core.single import compiled_core;"
+                "print(compiled_core().digest)",
+            ],
+            capture_output=True, text=True, check=True,
+        ).stdout
+        for first in ("collocation", "limit")
+    }  # fmt: skip
+    assert len(digests) == 1
