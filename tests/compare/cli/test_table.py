@@ -121,7 +121,7 @@ BAD = [
     (f"{BASIN} --start 0.1", "--start '0.1': write it as NAME=VALUE,NAME=VALUE"),
     (f"{BASIN} --start y=1,y=2", "--start 'y=1,y=2': y is given more than once"),
     (f"{MAP} --start x=1e60", "initial_state[0] = 1e+60: it must not be larger than 1e+50…"),
-    ("sweep basin disc --set contact_points=25", "contact_points = 25: compiled code supports up to 24…"),
+    ("sweep basin disc --set contact_points=25", "contact_points = 25: ensembles support up to 24…"),
     (f"{BASIN} --start x=1", f"--start x: {AXES} x; leave one of them out"),
     (f"{BASIN} --set hardening=1", "hardening = 1…"),
     (f"{BASIN} --output file", f"cannot write to the folder '…file': {THERE}"),

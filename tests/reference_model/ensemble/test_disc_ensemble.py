@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plain_engines import stuck_state
-from test_compiled_runs import STICKING
 
 from compare.claims.parameters import FIG8, FIG11
 from reference_model import DiscOnDisc, self_centred_equilibria, simulate, sticking_radius, whirls
@@ -21,6 +20,11 @@ BISTABLE = DiscOnDisc(
 """A disc similar to the pin of Fig. 5, with basins of an equilibrium and a whirl."""
 
 WHIRLING = replace(FIG11, friction_force=0.05)
+
+STICKING = DiscOnDisc(
+    mass=1.0, polar_inertia=0.034, stiffness=1.0, damping=0.255, friction_force=0.14, disc_speed=1.2, offset=0.1,
+    contact_radius=0.28, shaft_damping=0.01, shaft_speed=-0.5,
+)  # fmt: skip
 
 
 def starts_of(n, seed=0):
