@@ -3,7 +3,7 @@
 Run with ``python benchmarks/single_runs.py``; takes about 30 s, more if the kernels are not compiled yet. Times are
 the shortest processor times of several calls, in ms, at a tolerance of 1e-9.
 
-Measured on a core with AVX-512 beside other work:
+Measured on a busy machine, on a core with AVX-512:
 
 | motion | requested times | plain, ms | compiled, ms | ratio |
 |---|---|---|---|---|

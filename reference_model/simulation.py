@@ -39,7 +39,7 @@ def simulate(
     contact
         Friction law of a disc; None for the law of the parameters.
     compiled
-        Whether to use compiled code, which its first run on a machine compiles. It supports pins, rings, contact
+        Whether to use compiled code; the first call on a machine compiles it. It supports pins, rings, contact
         points and annuli under uniform pressure. None: use it if ``contact`` is None.
 
     """

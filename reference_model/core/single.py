@@ -150,8 +150,8 @@ def holding_force(friction: float, asked: float, outer: float, inner: float, loa
 
     alpha = 0.0
     if asked > 0.0:
-        lacking = lambda alpha: friction * at(alpha)[1] - asked  # noqa: E731
-        alpha = float(brentq(lacking, 0.0, 0.5 * math.pi, xtol=1e-16, rtol=1e-15))
+        quarter = 0.5 * math.pi
+        alpha = float(brentq(lambda a: friction * at(a)[1] - asked, 0.0, quarter, xtol=1e-16, rtol=1e-15))
     return friction * at(alpha)[0]
 
 
