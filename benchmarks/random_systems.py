@@ -19,7 +19,7 @@ from types import FrameType
 import numpy as np
 
 from reference_model import DiscOnDisc, PinOnDisc, SimulationError, simulate
-from reference_model.motion.nondimensional import Units
+from reference_model.core.units import Units
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 

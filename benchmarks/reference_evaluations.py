@@ -10,14 +10,14 @@ import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from reference_model.motion.stick import release_delay
 from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from reference_model import simulate
-from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.stick import release_delay
+from reference_model.motion.polar_form import SlipMotion
 from reference_model.systems import FloatArray
 
 STARTS = tuple(FIG5_STARTS.values())

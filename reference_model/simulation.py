@@ -1,12 +1,17 @@
-"""Simulation of one trajectory, in NumPy or by compiled code."""
+"""Simulation of one trajectory, interpreted or compiled."""
 
 from numpy.typing import ArrayLike
 
-from reference_model.contact.contact_law import Contact
-from reference_model.motion.exact import simulate_with
-from reference_model.motion.stepper import Thresholds
-from reference_model.systems import System, require_flag
+from reference_model.contact.contact_law import Contact, contact_of
+from reference_model.core.run import follow
+from reference_model.core.single import compiled_core, is_compilable, is_compiled, simulate_by
+from reference_model.systems import System, checked_state, checked_times, checked_tolerance, require_flag
 from reference_model.trajectory import Trajectory
+
+COMPILATION = 30.0
+"""Time in s that the interpreted runs of a process may take until it compiles, about as long as that takes."""
+
+_interpreted = 0.0
 
 
 def simulate(
@@ -16,11 +21,11 @@ def simulate(
     *,
     tolerance: float = 1e-9,
     contact: Contact | None = None,
-    compiled: bool | None = False,
+    compiled: bool | None = None,
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
-    Raises ``ValueError`` if an argument is invalid or compiled code does not support the contact, and
+    Raises ``ValueError`` if an argument is invalid or compiled code does not know the contact, and
     ``SimulationError`` if the integrator fails.
 
     Parameters
@@ -34,20 +39,31 @@ def simulate(
         Increasing times in s.
     tolerance
         Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
-        :class:`motion.nondimensional.Units`. With damping or rest, errors in random motions stay within 13
+        :class:`reference_model.core.units.Units`. With damping or rest, errors in random motions stay within 13
         tolerances. Otherwise they accumulate, to some 40 times after 10,000 steps.
     contact
         Friction law of a disc; None for the law of the parameters.
     compiled
-        Whether to use compiled code; the first call on a machine compiles it. It supports pins, rings, contact
-        points and annuli under uniform pressure. None: use it if ``contact`` is None.
+        Whether to use compiled code, which gives the same result and is made in the first call on a machine. It
+        knows pins, rings, contact points and annuli under uniform pressure. None: use it if this machine has it, or
+        the runs of this process in Python have taken as long as making it.
 
     """
+    global _interpreted
     if compiled is not None:
         require_flag("compiled", compiled)
-    if not (contact is None if compiled is None else compiled):
-        return simulate_with(Thresholds(), system, initial_state, times, tolerance=tolerance, contact=contact)
-    # Imported here so that simulations in NumPy start without the compiler.
-    from reference_model.core.single import simulate_compiled
-
-    return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)
+    start, moments = checked_state(system, initial_state), checked_times(times)
+    tolerance = checked_tolerance(tolerance)
+    law = contact_of(system, contact)
+    if compiled and not is_compilable(law):
+        raise ValueError(
+            f"contact = {contact}: compiled code knows a Ring, Points, and an Annulus under uniform pressure that is "
+            "not very thin; omit compiled=True"
+        )
+    if compiled is None:
+        compiled = is_compilable(law) and (_interpreted > COMPILATION or is_compiled())
+    if compiled:
+        return simulate_by(compiled_core(), system, law, start, moments, tolerance)
+    trajectory = simulate_by(follow, system, law, start, moments, tolerance)
+    _interpreted += trajectory.solution.wall_time
+    return trajectory

@@ -16,7 +16,8 @@ import numba.extending
 from llvmlite import ir
 from numba.core import types
 
-from reference_model.numerics.compiled_once import compiled_for, digest_of
+from reference_model.numerics.cache_folders import digest_of
+from reference_model.numerics.compiled_once import compiled_for
 
 extending: Any = numba.extending  # not fully typed
 cgutils: Any = numba.core.cgutils

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.contact.contact_law import IsotropicContact
+from reference_model.contact.contact_law import IsotropicContact, Shares
 from reference_model.contact.points import Points
 from reference_model.systems import ComplexArray, FloatArray
 
@@ -72,6 +72,25 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
         return lever / moment if force == 0.0 else 1.0 / force
     alpha = float(brentq(excess, 0.0, math.pi / 2.0, xtol=1e-16, rtol=1e-15))
     return math.hypot(load(alpha)[0], load(alpha)[1] / lever) / math.hypot(force, moment / lever)
+
+
+def force_beside(contact: IsotropicContact, load: float, moment: float) -> float | None:
+    """Return the largest force in N that friction can hold beside ``moment`` >= 0 in N m; None if it is too large.
+
+    ``load`` is μN in N. As S ~ sin α grows, the moment on the limit surface grows and the force falls.
+    """
+    most = contact.shares(0.0, 1.0).moment
+    if moment > load * most:
+        return None
+
+    def held(alpha: float) -> Shares:
+        return contact.shares(math.cos(alpha), math.sin(alpha) / most)
+
+    alpha = 0.0
+    if moment > 0.0:
+        quarter = math.pi / 2.0
+        alpha = float(brentq(lambda a: load * held(a).moment - moment, 0.0, quarter, xtol=1e-16, rtol=1e-15))
+    return load * held(alpha).resistance
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,13 +8,27 @@ slip are smooth there, although the direction of slip relaxes fast.
 import math
 
 import numpy as np
+from numpy.polynomial import legendre
+from scipy.special import roots_jacobi
 
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.points import turning_of_friction
 from reference_model.core.forces.rates import friction, growth, secant, tangent
 from reference_model.core.parts import part
-from reference_model.numerics.collocation import FROM_START, INTEGRAL, NODES
 from reference_model.systems import FloatArray
+
+NODES = 8
+POINTS = np.append(roots_jacobi(NODES - 1, 1.0, 0.0)[0], 1.0)
+"""Radau nodes in [−1, 1], the last at 1."""
+
+TO_SERIES = np.linalg.inv(legendre.legvander(POINTS, NODES - 1))
+"""Matrix from values at the nodes to Legendre coefficients."""
+
+INTEGRAL = 0.5 * legendre.legval(POINTS, legendre.legint(TO_SERIES, lbnd=-1)).T
+"""Matrix from values at the nodes to integrals from 0 to the nodes, scaled to [0, 1]."""
+
+FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
+"""Matrix from values at the start and the nodes to Legendre coefficients."""
 
 DIFFERENCE = 1e-7
 """Change of the direction of slip for numerical derivatives of friction."""

@@ -1,11 +1,9 @@
 """Registration of plain functions, which run interpreted until compiled code is asked for."""
 
 from collections.abc import Callable
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-if TYPE_CHECKING:
-    from reference_model.numerics.compiled_once import CompiledOnce
+from reference_model.numerics.cache_folders import digest_of_text
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -14,6 +12,9 @@ PARTS: list[Callable[..., Any]] = []
 
 INLINED: list[Callable[..., Any]] = []
 """Those that are small and called often."""
+
+REPLACED: dict[Callable[..., Any], Callable[..., Any]] = {}
+"""Functions that need Python, and those in their place in compiled code."""
 
 
 def part(function: Function) -> Function:
@@ -31,20 +32,33 @@ def inlined(function: Function) -> Function:
     return function
 
 
-def compiled(function: Callable[..., None]) -> "CompiledOnce":
-    """Return ``function``, which calls parts, as compiled code.
+def replaced_by(other: Callable[..., Any]) -> Callable[[Function], Function]:
+    """Register a function that needs Python, and ``other`` with the same arguments for compiled code."""
 
-    The cache depends only on the text of these functions and of this one, and on the constants in it.
-    """
-    from numba.extending import register_jitable
+    def register(function: Function) -> Function:
+        REPLACED[function] = other
+        return function
 
-    from reference_model.numerics.compiled_once import CompiledOnce, digest_of_text
+    return register
+
+
+def register_parts() -> None:
+    """Make numba compile parts into their callers."""
+    from numba.extending import overload, register_jitable
 
     for each in PARTS:
         inline = {"forceinline": True, "_nrt": False} if each in INLINED else {}
         register_jitable(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **inline)(each)
-    parts = sorted([*PARTS, *INLINED], key=_name_of)  # independent of the order of imports
-    return CompiledOnce(function, Path(__file__).parent, digest_of_text([*parts, function, compiled]))
+    for each, other in REPLACED.items():
+        overload(each, strict=False)(lambda *_, other=other: other)
+
+
+def digest_with_parts(function: Callable[..., None]) -> str:
+    """Return a digest of the text of ``function`` and of all parts, and of the constants in it."""
+    parts = sorted(
+        [*PARTS, *INLINED, *REPLACED.values()], key=_name_of
+    )  # independent of the order of imports
+    return digest_of_text([*parts, function, register_parts])
 
 
 def _name_of(function: Callable[..., Any]) -> tuple[str, str]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from reference_model.core.collocation import solve_linear
 from reference_model.core.explicit import Unknowns
-from reference_model.core.forces.contact import shares
+from reference_model.core.forces.contact import resisted
 from reference_model.core.forces.law import CENTRE, Law, seen_from
 from reference_model.core.forces.points import centre_slip
 from reference_model.core.forces.rates import growth, pull, tangent
@@ -159,7 +159,7 @@ def _last_grip(
 @part
 def _growth_at(strong: float, turning: float, beta: float, law: Law) -> tuple[float, float]:
     c, s = math.cos(beta), math.sin(beta)
-    resistance, twist = shares(abs(c), abs(s), law.outer, law.inner, law.load)
+    resistance, twist = resisted(abs(c), abs(s), law)
     force = strong - law.friction * math.copysign(resistance, c)
     moment = turning - law.friction * math.copysign(twist, s)
     return force * c + moment * s, moment * c - force * s

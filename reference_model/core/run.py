@@ -45,6 +45,8 @@ from reference_model.systems import FloatArray
 AT_REST = 1e-15
 """Slip speed of a point, as a share of that of the centre, that is rounding error."""
 
+NO_CREEP = (0.0, 0.0, 0.0, 0.0)
+
 
 @part
 def followed(y: Unknowns, law: Law) -> tuple[Unknowns, Law]:
@@ -92,27 +94,29 @@ def advance(
     state: FloatArray, memory: FloatArray, tolerance: float, end: float, times: FloatArray, out: FloatArray,
     phases: FloatArray, most_work: float, parameters: FloatArray, around: FloatArray,
 ) -> None:  # fmt: skip
+    """Continue a run like :func:`follow` under the law with ``parameters`` and ``around``."""
+    follow(unpacked(parameters, around), state, memory, tolerance, end, times, out, phases, most_work)
+
+
+@part
+def follow(
+    law: Law, state: FloatArray, memory: FloatArray, tolerance: float, end: float, times: FloatArray,
+    out: FloatArray, phases: FloatArray, most_work: float,
+) -> None:  # fmt: skip
     """Continue a run from ``state``, shape (7,), for about ``most_work`` explicit steps.
 
     The result does not depend on ``most_work``. ``times`` are the requested times, (n,), ``out`` the unknowns without
     the time, (n, 6), and ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at
-    time 0 and takes steps with errors of ``tolerance``. ``parameters`` and ``around`` are those of the law.
+    time 0 and takes steps with errors of ``tolerance``.
     """
-    law = seen_from(int(memory[POINT]) - 1, memory[SENSE], unpacked(parameters, around))
+    law = seen_from(int(memory[POINT]) - 1, memory[SENSE], law)
     y = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
     K, F = np.empty((EXTENDED, SIZE)), np.empty((TERMS + 1, SIZE))
-    none = (0.0, 0.0, 0.0, 0.0)
     work = memory[WORK] + most_work
     if memory[PHASE] == 0.0:
         y, law = as_started(y, law)
         sides(y, memory, law)
-        kind = SLIPS
-        if speed_of(y, law) == 0.0 and law.friction > 0.0:
-            if at_rest(y, law) and holds_for(y[0], y[1], y[5], law) > 0.0:
-                kind = STICKS
-            elif pivots(y, memory, law) or departing(y, law)[1].sense != 0.0:
-                kind = PIVOTS
-        enter(memory, phases, kind, y, law)
+        enter(memory, phases, first_kind(y, memory, law), y, law)
     while y[6] < end and memory[WORK] < work and memory[STATUS] == RUNS:
         if memory[PHASES] > len(phases) - 3:
             memory[STATUS] = FULL
@@ -122,49 +126,9 @@ def advance(
             memory[SIDE_OF_SPIN] = 1.0
         y, law = followed(y, law)
         if law.friction > 0.0 and (speed_of(y, law) == 0.0 or memory[SIDE_OF_GRIP] < 0.0):
-            memory[WORK] += 1.0
-            if pivots(y, memory, law):
-                law = seen_from(law.point, math.copysign(1.0, y[4]), law)
-                enter(memory, phases, PIVOTS, y, law)
-                memory[STEP], memory[SHORT] = FIRST_STEP, 0.0
-                continue
-            if at_rest(y, law):
-                law = seen_from(CENTRE, 0.0, law)
-                y = (y[0], y[1], 0.0, 0.0, 0.0, y[5], y[6])
-                held = holds_for(y[0], y[1], y[5], law)
-                if held > 0.0:
-                    enter(memory, phases, STICKS, y, law)
-                    y = record_carried(y, min(y[6] + held, end), none, memory, times, out, law)
-                    memory[STEPS] += 1.0
-                    if y[6] >= end:
-                        break
-            n, law = departing(y, law)
-            enter(memory, phases, PIVOTS if law.sense != 0.0 else SLIPS, y, law)
-            y = begin_slip(y, n, memory, tolerance, end, times, out, law)
-            sides(y, memory, law)
-            if law.sense != 0.0 and y[4] == 0.0:
-                y = slide(y, memory, tolerance, end, work, times, out, law, K, F)
-            continue
-        f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
-        if ends_together(y, law):
-            whole = seen_from(CENTRE, 0.0, law)
-            y, law = seen(y, law, whole), whole
-            f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
-        left = time_left(y, f, law)
-        if left >= 0.0:
-            memory[STEPS] += 1.0
-            y = record_falling(y, left, end, memory, times, out, law)
-            continue
-        creep = creep_from(y, tolerance, law)
-        if creep[0] > 0.0:
-            memory[STEPS] += 1.0
-            whole = seen_from(CENTRE, 0.0, law)
-            y, law = seen(y, law, whole), whole
-            y = record_carried(y, end, creep, memory, times, out, law)
-        elif law.friction > 0.0 and memory[SHORT] >= memory[PATIENCE]:
-            y = slip_stiffly(y, memory, tolerance, end, times, out, law)
+            y, law = leave_rest(y, memory, tolerance, end, work, times, out, phases, law, K, F)
         else:
-            y = slide(y, memory, tolerance, end, work, times, out, law, K, F)
+            y, law = slip_on(y, memory, tolerance, end, work, times, out, law, K, F)
     memory[POINT], memory[SENSE] = law.point + 1.0, law.sense
     for v in range(SIZE):
         state[v] = y[v]
@@ -172,3 +136,66 @@ def advance(
             memory[STATUS] = FAILS
     if y[6] >= end and memory[STATUS] == RUNS:
         memory[STATUS] = ENDS
+
+
+@part
+def first_kind(y: Unknowns, memory: FloatArray, law: Law) -> float:
+    """Return the kind of the first phase."""
+    if speed_of(y, law) > 0.0 or law.friction == 0.0:
+        return SLIPS
+    if at_rest(y, law) and holds_for(y[0], y[1], y[5], law) > 0.0:
+        return STICKS
+    return PIVOTS if pivots(y, memory, law) or departing(y, law)[1].sense != 0.0 else SLIPS
+
+
+@part
+def leave_rest(
+    y: Unknowns, memory: FloatArray, tolerance: float, end: float, work: float, times: FloatArray, out: FloatArray,
+    phases: FloatArray, law: Law, K: FloatArray, F: FloatArray,
+) -> tuple[Unknowns, Law]:  # fmt: skip
+    """Follow a body of which a point or all rests until slip or a pivot has begun, or to the end of the run."""
+    memory[WORK] += 1.0
+    if pivots(y, memory, law):
+        law = seen_from(law.point, math.copysign(1.0, y[4]), law)
+        enter(memory, phases, PIVOTS, y, law)
+        memory[STEP], memory[SHORT] = FIRST_STEP, 0.0
+        return y, law
+    if at_rest(y, law):
+        law = seen_from(CENTRE, 0.0, law)
+        y = (y[0], y[1], 0.0, 0.0, 0.0, y[5], y[6])
+        held = holds_for(y[0], y[1], y[5], law)
+        if held > 0.0:
+            enter(memory, phases, STICKS, y, law)
+            y = record_carried(y, min(y[6] + held, end), NO_CREEP, memory, times, out, law)
+            memory[STEPS] += 1.0
+            if y[6] >= end:
+                return y, law
+    n, law = departing(y, law)
+    enter(memory, phases, PIVOTS if law.sense != 0.0 else SLIPS, y, law)
+    y = begin_slip(y, n, memory, tolerance, end, times, out, law)
+    sides(y, memory, law)
+    if law.sense != 0.0 and y[4] == 0.0:
+        y = slide(y, memory, tolerance, end, work, times, out, law, K, F)
+    return y, law
+
+
+@part
+def slip_on(
+    y: Unknowns, memory: FloatArray, tolerance: float, end: float, work: float, times: FloatArray, out: FloatArray,
+    law: Law, K: FloatArray, F: FloatArray,
+) -> tuple[Unknowns, Law]:  # fmt: skip
+    """Follow slip to its end in closed form, or by steps of the method that suits it."""
+    whole = seen_from(CENTRE, 0.0, law)
+    if ends_together(y, law):
+        y, law = seen(y, law, whole), whole
+    left = time_left(y, rates(y[0], y[1], y[2], y[3], y[4], y[5], law), law)
+    if left >= 0.0:
+        memory[STEPS] += 1.0
+        return record_falling(y, left, end, memory, times, out, law), law
+    creep = creep_from(y, tolerance, law)
+    if creep[0] > 0.0:
+        memory[STEPS] += 1.0
+        return record_carried(seen(y, law, whole), end, creep, memory, times, out, whole), whole
+    if law.friction > 0.0 and memory[SHORT] >= memory[PATIENCE]:
+        return slip_stiffly(y, memory, tolerance, end, times, out, law), law
+    return slide(y, memory, tolerance, end, work, times, out, law, K, F), law

@@ -4,16 +4,17 @@ import functools
 import math
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import Contact, Ring, contact_of
+from reference_model.contact.contact_law import IsotropicContact, Pin, Ring
+from reference_model.contact.limit_surface import force_beside
 from reference_model.contact.points import Points
-from reference_model.core.forces.contact import shares
+from reference_model.core.forces.law import OWN, SCALARS, Law, unpacked
 from reference_model.core.forces.points import around_of
 from reference_model.core.memory import (
     EVALUATIONS,
@@ -28,23 +29,15 @@ from reference_model.core.memory import (
     STEP,
     STEPS,
 )
-from reference_model.core.parts import compiled
+from reference_model.core.parts import digest_with_parts, register_parts
 from reference_model.core.run import advance
-from reference_model.motion.frame import Frame
-from reference_model.motion.nondimensional import Units
-from reference_model.motion.stepper import Kind
+from reference_model.core.units import Frame, Units
+from reference_model.numerics.cache_folders import has_files
 from reference_model.support import Support
-from reference_model.systems import (
-    DiscOnDisc,
-    FloatArray,
-    System,
-    checked_state,
-    checked_times,
-    checked_tolerance,
-)
-from reference_model.trajectory import SimulationError, Solution, StepCount, Trajectory, phases_of
+from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.trajectory import Kind, SimulationError, Solution, StepCount, Trajectory, phases_of
 
-METHOD = "compiled DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
+METHOD = "DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
 
 LOCAL, LEAST = 0.05, 3e-14
 """Tolerance of a step as a share of the motion's, and its smallest value."""
@@ -70,122 +63,121 @@ THINNEST = 1e-3
 KINDS: dict[int, Kind] = {1: "slip", 2: "stick", 3: "pivot"}
 """Names of the kinds of phases."""
 
+PACKAGE = Path(__file__).parent
+
 Core = Callable[..., None]
+"""Continues a run, like :func:`reference_model.core.run.follow`."""
+
+
+@dataclass(frozen=True)
+class OwnLaw:
+    """A law of the user for scaled slip and r = κ(φ̇ − ω), with κ in m."""
+
+    contact: IsotropicContact
+    gyration: float
+
+    def shares(self, slip: float, spin: float) -> tuple[float, float]:
+        found = self.contact.shares(slip, spin / self.gyration)
+        return found.resistance, found.moment / self.gyration
 
 
 @functools.cache
 def compiled_core() -> Core:
-    """Return :func:`reference_model.core.run.advance` as compiled code."""
-    return compiled(advance)
+    """Return :func:`reference_model.core.run.follow` as compiled code, which is made in the first call."""
+    from reference_model.numerics.compiled_once import CompiledOnce
+
+    register_parts()
+    kernel = CompiledOnce(advance, PACKAGE, digest_with_parts(advance))
+
+    def core(law: Law, *arguments: Any) -> None:
+        kernel(*arguments, np.array(law[:SCALARS]), law.around)
+
+    return core
 
 
-def simulate_compiled(
-    system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-    contact: Contact | None = None,
-) -> Trajectory:
-    """Simulate like :func:`reference_model.simulate`, by compiled code.
+def is_compiled() -> bool:
+    """Return whether an earlier process or call on this machine has compiled the core."""
+    return has_files(PACKAGE, digest_with_parts(advance), advance.__name__)
 
-    Raises ``ValueError`` if the core does not know the contact.
+
+def is_compilable(contact: IsotropicContact | Points) -> bool:
+    """Return whether compiled code knows a law: a pin, a ring, points, and an annulus under uniform pressure."""
+    if isinstance(contact, Annulus):
+        return contact.pressure is None and contact.inner_radius <= (1.0 - THINNEST) * contact.outer_radius
+    return isinstance(contact, Pin | Ring | Points)
+
+
+def law_of(system: System, contact: IsotropicContact | Points, unit: Units) -> Law:
+    """Return the scaled law of a pin, or of a disc with this contact.
+
+    Raises ``ValueError`` if the disc touches only in its centre, or the law has more than two resting radii.
     """
-    require_known(system, contact_of(system, contact))
-    return simulate_by(compiled_core(), system, initial_state, times, tolerance=tolerance, contact=contact)
-
-
-def require_known(system: System, contact: Contact) -> None:
-    """Raise ``ValueError`` if the core does not contain a law."""
-    if isinstance(system, DiscOnDisc) and not isinstance(contact, Ring | Annulus | Points):
-        raise ValueError(
-            f"contact = {contact}: compiled runs support a Ring, an Annulus, Points and the law of the parameters; "
-            "omit compiled=True"
-        )
-    if isinstance(contact, Annulus) and contact.pressure is not None:
-        raise ValueError("pressure: compiled runs support only a uniform one, None; omit compiled=True")
-    if isinstance(contact, Annulus) and contact.inner_radius > (1.0 - THINNEST) * contact.outer_radius:
-        raise ValueError(
-            f"inner_radius = {contact.inner_radius:g} m: compiled runs support annuli with a width of at least "
-            f"{THINNEST:g} of outer_radius = {contact.outer_radius:g} m; use a Ring, or omit compiled=True"
-        )
-
-
-def law_of(system: System, contact: Any, unit: Units) -> tuple[FloatArray, FloatArray]:
-    """Return the scaled parameters and ``around`` of the law of a pin, or a disc with this contact."""
     support = Support.of(system).scaled(unit.time**2 / system.mass, unit.length)
     friction = system.friction_force / system.mass * unit.time**2 / unit.length
     hold, outer, inner, load, shaft, lag, gyration = friction, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
-    around = np.zeros(0)
+    around, own = np.zeros(0), None
     if isinstance(system, DiscOnDisc):
         gyration = math.sqrt(system.polar_inertia / system.mass)
         lag = gyration * (system.disc_speed - system.shaft_speed) / unit.speed
         shaft = system.shaft_damping / system.polar_inertia * unit.time
         if isinstance(contact, Points):
             around = around_of(list(contact), gyration)
-        elif isinstance(contact, Ring):
-            outer = inner = contact.radius / gyration
         else:
-            outer, inner = contact.outer_radius / gyration, contact.inner_radius / gyration
-            load = 1.0 / ((1.0 - inner / outer) * (1.0 + inner / outer))
+            outer, inner, load, own = _radii(contact, gyration)
+            moment = system.shaft_damping * abs(system.disc_speed - system.shaft_speed)
+            held = force_beside(contact, system.friction_force, moment)
+            hold = (
+                -1.0 if held is None else friction * held / system.friction_force if friction > 0.0 else 0.0
+            )
         gyration /= unit.length
-        if friction > 0.0 and len(around) == 0:
-            hold = holding_force(friction, abs(shaft * lag), outer, inner, load)
     scalars = (
         system.damping / system.mass * unit.time, support.stiffness, support.offset, support.hardening,
         support.stop_gap, support.stop_stiffness, friction, hold, system.disc_speed * unit.time, outer, inner, load,
         shaft, lag, gyration, 0.5 * friction,
     )  # fmt: skip
-    return np.array(scalars), around
+    return unpacked(np.array(scalars), around)._replace(own=own)
 
 
-def holding_force(friction: float, asked: float, outer: float, inner: float, load: float) -> float:
-    """Return the force on the limit surface at the moment that the shaft exerts; -1 beyond the largest moment."""
-    most = shares(0.0, 1.0, outer, inner, load)[1]
-    if asked > friction * most:
-        return -1.0
-
-    def at(alpha: float) -> tuple[float, float]:
-        return shares(math.cos(alpha), math.sin(alpha) / most, outer, inner, load)
-
-    alpha = 0.0
-    if asked > 0.0:
-        quarter = 0.5 * math.pi
-        alpha = float(brentq(lambda a: friction * at(a)[1] - asked, 0.0, quarter, xtol=1e-16, rtol=1e-15))
-    return friction * at(alpha)[0]
+def _radii(contact: IsotropicContact, gyration: float) -> tuple[float, float, float, OwnLaw | None]:
+    """Return the radii over κ, the load of the law, and a law that is not in the core."""
+    if isinstance(contact, Pin):
+        raise ValueError(
+            f"contact = {contact}: a disc with point contact never comes to rest; use a PinOnDisc"
+        )
+    if isinstance(contact, Ring):
+        return contact.radius / gyration, contact.radius / gyration, 0.0, None
+    if isinstance(contact, Annulus) and is_compilable(contact):
+        outer, inner = contact.outer_radius / gyration, contact.inner_radius / gyration
+        return outer, inner, 1.0 / ((1.0 - inner / outer) * (1.0 + inner / outer)), None
+    radii = sorted((float(radius) / gyration for radius in contact.resting_radii), reverse=True)
+    if len(radii) > 2:
+        raise ValueError(f"resting_radii = {contact.resting_radii}: at most two radii are possible")
+    outer, inner = (radii or [1.0])[0], (radii[1:] or [0.0])[0]  # steps may end anywhere
+    return outer, inner, OWN, OwnLaw(contact, gyration)
 
 
 def simulate_by(
     core: Core,
     system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-    contact: Contact | None = None,
+    contact: IsotropicContact | Points,
+    start: FloatArray,
+    moments: FloatArray,
+    tolerance: float,
 ) -> Trajectory:
-    """Simulate like :func:`reference_model.simulate` by ``core``, interpreted or compiled."""
+    """Return the motion like :func:`reference_model.simulate`, by ``core``; the arguments are checked."""
     clock = time.perf_counter()
-    start, moments = checked_state(system, initial_state), checked_times(times)
-    tolerance = checked_tolerance(tolerance)
-    law = contact_of(system, contact)
     unit = Units.of(system, start)
-    frame = Frame.of(system, unit)
-    parameters, around = law_of(system, law, unit)
+    frame, law = Frame.of(system, unit), law_of(system, contact, unit)
     columns = [0, 1, 5, 2, 3, 4] if isinstance(system, DiscOnDisc) else [0, 1, 2, 3]
     state = np.zeros(7)
     state[columns] = frame.unknowns(start)
     scaled = (moments - moments[0]) / unit.time
-    lasting = float(scaled[-1])
-    if system.damping > 0.0:
-        lasting = min(lasting, 2.0 * system.mass / (system.damping * unit.time))
-    share = min(LOCAL, SUM / (DENSITY * lasting)) if lasting > 0.0 else LOCAL
-    local = max(tolerance * share * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)
+    local = _tolerance_of_steps(system, unit, float(scaled[-1]), tolerance)
     out, memory, phases = np.zeros((len(moments), 6)), np.zeros(SLOTS), np.zeros((64, 8))
     memory[PATIENCE], memory[STEP], memory[RECORDED] = FEW, FIRST_STEP, 1.0
     end, count = float(scaled[-1]), StepCount(float(scaled[-1]))
     while memory[STATUS] == RUNS:
-        core(state, memory, local, end, scaled, out, phases, MOST_WORK, parameters, around)
+        core(law, state, memory, local, end, scaled, out, phases, MOST_WORK)
         if memory[STATUS] == FULL:
             phases = np.vstack((phases, np.zeros_like(phases)))
             memory[STATUS] = RUNS
@@ -209,3 +201,10 @@ def simulate_by(
         METHOD, tolerance, int(memory[EVALUATIONS]), int(memory[STEPS]), time.perf_counter() - clock
     )
     return Trajectory(system, moments, states, phases_of(begun, float(moments[-1])), solution)
+
+
+def _tolerance_of_steps(system: System, unit: Units, lasting: float, tolerance: float) -> float:
+    if system.damping > 0.0:
+        lasting = min(lasting, 2.0 * system.mass / (system.damping * unit.time))
+    share = min(LOCAL, SUM / (DENSITY * lasting)) if lasting > 0.0 else LOCAL
+    return max(tolerance * share * min(1.0, unit.springs(system) / SLOW_SPRINGS), LEAST)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from reference_model.core.collocation import at, error_of, series, solve
+from reference_model.core.collocation import NODES, POINTS, at, error_of, series, solve
 from reference_model.core.explicit import Unknowns
 from reference_model.core.forces.law import CENTRE, Law, seen_from
 from reference_model.core.forces.points import centre_slip
@@ -31,7 +31,6 @@ from reference_model.core.recording import record_series
 from reference_model.core.rest import begun, drift
 from reference_model.core.slip import creep_from, point_for
 from reference_model.core.surfaces import crossed_any
-from reference_model.numerics.collocation import NODES, POINTS
 from reference_model.systems import FloatArray
 
 FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12

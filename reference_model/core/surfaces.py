@@ -29,7 +29,7 @@ def exists(which: int, law: Law) -> bool:
     if which == SIDE_OF_RIM:
         return law.friction > 0.0 and law.outer > 0.0
     if which == SIDE_OF_HOLE:
-        return law.friction > 0.0 and law.load > 0.0 and law.inner > 0.0
+        return law.friction > 0.0 and law.load != 0.0 and law.inner > 0.0
     return law.sense != 0.0
 
 

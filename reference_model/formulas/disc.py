@@ -11,9 +11,8 @@ from dataclasses import fields, replace
 from typing import NamedTuple
 
 from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
+from reference_model.contact.limit_surface import force_beside
 from reference_model.formulas import pin as pin_formulas
-from reference_model.motion.disc_equations import DiscMotion
-from reference_model.motion.stick import stuck_centre
 from reference_model.numerics.roots import zeros_between
 from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, PinOnDisc
@@ -54,14 +53,14 @@ def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOn
     cannot supply the moment or the disc rests on single points.
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
-    centre = stuck_centre(DiscMotion.of(disc, law), law)
-    if centre is None:
+    force = force_beside(law, disc.friction_force, shaft_torque(disc))
+    if force is None:
         largest = disc.friction_force * law.shares(0.0, 1.0).moment
         raise ValueError(
             f"friction_force = {disc.friction_force:g} N: the disc cannot stick, because friction holds only "
             f"{largest:g} N m of the shaft's {shaft_torque(disc):g} N m"
         )
-    return replace(pin_of(disc), friction_force=centre.friction * disc.mass)
+    return replace(pin_of(disc), friction_force=force)
 
 
 class Position(NamedTuple):

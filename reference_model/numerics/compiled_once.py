@@ -1,39 +1,25 @@
-"""Functions called from Python, compiled once per machine and kept on disk until their sources change.
-
-numba's cache checks only the file of the function itself, although it compiles functions and constants of other files
-into it. So each package keeps compiled functions in a folder named after a digest of its sources, or of the bytecode
-and the constants of the functions that are compiled.
-"""
+"""Functions called from Python, compiled once per machine and kept on disk until their sources change."""
 
 import gc
 import hashlib
 import multiprocessing
-import shutil
 import sys
-import tempfile
 import threading
-import time
 import types
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
-import numpy as np
+
+from reference_model.numerics.cache_folders import digest_of, folder_of
 
 with suppress(ImportError):  # on Windows
     import fcntl
 
 LONG = 1.0
 """Time in s before a line on standard error announces the compilation; loading takes less."""
-
-VERSIONS = 4
-"""Number of source versions whose compiled functions are kept."""
-
-UNUSED = 86_400.0
-"""Age in s of versions that are deleted; a running process may still need a younger one."""
 
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 
@@ -116,41 +102,6 @@ def _fingerprint(file: Path) -> str:
     return f"{hashlib.sha256(file.read_bytes()).hexdigest()} {file.name}"
 
 
-@cache
-def digest_of(package: Path) -> str:
-    """Return a digest of a package's sources; call it at import, because compiled functions belong to these."""
-    digest = hashlib.sha256()
-    for file in sorted(package.rglob("*.py")):
-        digest.update(
-            f"{file.relative_to(package)} {hashlib.sha256(file.read_bytes()).hexdigest()}\n".encode()
-        )
-    return digest.hexdigest()[:16]
-
-
-def digest_of_text(functions: Iterable[Callable[..., Any]]) -> str:
-    """Return a digest of the bytecode of functions and of the constants in it, which numba compiles."""
-    digest = hashlib.sha256()
-    for function in functions:
-        code = function.__code__
-        own = [constant for constant in code.co_consts if constant != function.__doc__]
-        outer = [
-            (name, _constant(function.__globals__[name]))
-            for name in code.co_names
-            if name in function.__globals__
-        ]
-        digest.update(
-            repr((function.__name__, code.co_code, code.co_varnames, code.co_names, own, outer)).encode()
-        )
-    return digest.hexdigest()[:16]
-
-
-def _constant(value: Any) -> Any:
-    """Return the compiled value of a global name, nothing for functions and modules."""
-    if isinstance(value, np.ndarray):
-        return value.shape, value.tobytes()
-    return value if isinstance(value, int | float | str | tuple) else getattr(value, "_fields", "")
-
-
 def _placed(function: Callable[..., Any], folder: Path) -> Callable[..., Any]:
     """Return ``function`` as if its file were in ``folder``, because numba compares the stamps of source files."""
     file = folder / f"{function.__name__}.source"  # not a source of the package
@@ -162,40 +113,6 @@ def _placed(function: Callable[..., Any], folder: Path) -> Callable[..., Any]:
     )
     placed.__module__, placed.__qualname__ = function.__module__, function.__qualname__
     return placed
-
-
-@cache
-def folder_of(package: Path, digest: str) -> str:
-    """Return the folder of compiled functions with this digest, or "" if none is writable.
-
-    It lies in ``NUMBA_CACHE_DIR`` if set, else next to the sources, or in the user's cache if these are read-only.
-    """
-    for place in _places(package):
-        folder = place / f"{package.name}-{digest}"
-        with suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-            folder.touch()
-            _delete_old(place, package)
-            return str(folder)
-    return ""
-
-
-def _places(package: Path) -> Iterator[Path]:
-    if config.CACHE_DIR:
-        yield Path(config.CACHE_DIR)
-        return
-    yield package / "__pycache__"
-    with suppress(RuntimeError):  # the user has no home folder
-        yield Path.home() / ".cache" / "friction-discs"
-
-
-def _delete_old(place: Path, package: Path) -> None:
-    with suppress(OSError):  # another process may delete them too
-        used = sorted((folder.stat().st_mtime, folder) for folder in place.glob(f"{package.name}-*"))
-        for last, folder in used[:-VERSIONS]:
-            if time.time() - last > UNUSED:
-                shutil.rmtree(folder, ignore_errors=True)
 
 
 @contextmanager
@@ -211,7 +128,7 @@ def _locked(lock: Path) -> Iterator[None]:
 def _announce() -> None:
     """Report a long compilation, once per process; worker processes are silent."""
     if multiprocessing.parent_process() is None and _announced.acquire(blocking=False):
-        _say("Compiling for this machine, once for each kind of system (about 20 s of processor time) ...")
+        _say("Compiling for this machine, once (about a minute of processor time) ...")
 
 
 def _say(sentence: str) -> None:

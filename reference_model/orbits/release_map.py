@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import newton
 
-from reference_model.motion.pin_equations import SlipMotion
 from reference_model.orbits.shooting import REFERENCE, Orbit, ShootingProblem
 from reference_model.support import require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system, require_whole
@@ -79,32 +78,28 @@ class ReleaseMap:
         return 2.0 * math.pi / min(abs(self.pin.disc_speed), self.pin.natural_frequency)
 
     @property
-    def _offset_pull(self) -> complex:
+    def _offset_pull(self) -> float:
         """Pull on the axis in m/s², k²X0, which does not turn; zero if the disc is at rest."""
-        return self._motion.pull(0j, 0j) if self.pin.disc_speed != 0.0 else 0j
+        return self.pin.stiffness * self.pin.offset / self.pin.mass if self.pin.disc_speed != 0.0 else 0.0
 
     @property
     def _carried_pull(self) -> complex:
         """Pull per distance from the axis in 1/s², ω² − k² − iωβ/m, which turns with the disc."""
-        motion, omega = self._motion, 1j * self.pin.disc_speed
-        return -motion.support.stiffness - (motion.damping + omega) * omega
-
-    @property
-    def _motion(self) -> SlipMotion:
-        return SlipMotion.of(self.pin)
+        pin = self.pin
+        return complex(pin.disc_speed**2 - pin.stiffness / pin.mass, -pin.disc_speed * pin.damping / pin.mass)
 
     def state(self, angle: float) -> FloatArray:
         """Return the state of release at ``angle``, shape (4,)."""
-        motion, offset = self._motion, self._offset_pull
-        lag = cmath.exp(-1j * math.copysign(angle, motion.disc_speed))
-        z = (motion.friction * lag * offset / abs(offset) - offset) / self._carried_pull
-        v = 1j * motion.disc_speed * z
+        omega, offset = self.pin.disc_speed, self._offset_pull
+        limit = self.pin.friction_force / self.pin.mass * math.copysign(1.0, offset)
+        z = (limit * cmath.exp(-1j * math.copysign(angle, omega)) - offset) / self._carried_pull
+        v = 1j * omega * z
         return np.array((z.real, z.imag, v.real, v.imag))
 
     def angle(self, state: ArrayLike) -> float:
         """Return the lag of the pull behind that of the offset, for a ``state`` of rest, shape (4,)."""
         x, y = np.asarray(state)[:2].tolist()
-        pull = self._motion.pull(complex(x, y), 0j)
+        pull = self._offset_pull + self._carried_pull * complex(x, y)
         return -math.copysign(1.0, self.pin.disc_speed) * cmath.phase(pull / self._offset_pull)
 
     def first(self, state: ArrayLike, wanted: Callable[[Release], bool]) -> tuple[Release | None, FloatArray]:

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from reference_model.trajectory.pictures import Figure, FuncAnimation
 
 
+Kind = Literal["slip", "pivot", "stick"]
+"""Kinds of phases."""
+
+
 class SimulationError(RuntimeError):
     """An engine failed or returned non-finite numbers."""
 
@@ -62,15 +66,13 @@ class Phase:
     ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about a resting contact point.
     """
 
-    kind: Literal["slip", "pivot", "stick"]
+    kind: Kind
     start: float
     end: float
     initial_state: FloatArray
 
 
-def phases_of(
-    begun: Sequence[tuple[Literal["slip", "pivot", "stick"], float, FloatArray]], end: float
-) -> tuple[Phase, ...]:
+def phases_of(begun: Sequence[tuple[Kind, float, FloatArray]], end: float) -> tuple[Phase, ...]:
     """Return the phases for their kinds, starts in s and first states; the last one lasts until ``end``."""
     ends = [*(start for _, start, _ in begun[1:]), end]
     return tuple(

@@ -1,4 +1,4 @@
-"""Motions of every kind by every way to compute them, without knowledge of how they are computed.
+"""Motions of every kind, without knowledge of how they are computed.
 
 The motion must be the limit of motions with smooth friction, have the symmetries of the equations, lose energy, and
 converge with the tolerance.
@@ -17,8 +17,6 @@ from reference_model import Annulus, power_balance, simulate
 
 KINDS = ("pin", "ring", "points", "annulus")
 SUPPORTS = ("linear", "hardening", "stop", "both")
-WAYS = {"interpreted": False, "compiled": True}
-
 EPSILON = 1e-6
 """Coarser of two slip speeds of smooth friction in m/s; the finer is a quarter of it."""
 
@@ -26,8 +24,7 @@ OF_ALL_STEPS = 30.0
 """Error bound in tolerances. Each of some hundreds of steps may be off by 0.05, and most errors decay."""
 
 of_each_kind = pytest.mark.parametrize(
-    ("kind", "support", "way"),
-    [(kind, support, way) for kind in KINDS for support in SUPPORTS for way in WAYS],
+    ("kind", "support"), [(kind, support) for kind in KINDS for support in SUPPORTS]
 )
 
 
@@ -51,11 +48,11 @@ def smooth(kind, support, course, epsilon):
 
 
 @of_each_kind
-def test_motion_is_the_limit_of_motions_with_smooth_friction(kind, support, way):
+def test_motion_is_the_limit_of_motions_with_smooth_friction(kind, support):
     # The integral over an annulus is expensive.
     for course in range(1 if kind == "annulus" else 5):
         system, start, chosen = motion_of(kind, support, course)
-        found = simulate(system, start, TIMES, compiled=WAYS[way], **chosen).states
+        found = simulate(system, start, TIMES, **chosen).states
         coarse, fine = (smooth(kind, support, course, EPSILON * share) for share in (1.0, 0.25))
         limit = fine + (fine - coarse) / 3.0
         # In stick the error is linear in ε, after a release of order ε^0.8, and in slip of order ε². For orders from
@@ -65,13 +62,12 @@ def test_motion_is_the_limit_of_motions_with_smooth_friction(kind, support, way)
 
 
 @of_each_kind
-def test_motion_on_a_centred_support_turns_with_its_start(kind, support, way):
+def test_motion_on_a_centred_support_turns_with_its_start(kind, support):
     turn = 0.7
     system, start, chosen = motion_of(kind, support, 0)
     system = replace(system, offset=0.0)
     straight, turned = (
-        simulate(system, state, TIMES, compiled=WAYS[way], **chosen).states
-        for state in (start, turned_by(turn, start))
+        simulate(system, state, TIMES, **chosen).states for state in (start, turned_by(turn, start))
     )
     error = np.abs(np.array([turned_by(turn, state) for state in straight]) - turned).max()
     assert error < OF_ALL_STEPS * 1e-9
@@ -89,22 +85,22 @@ def turned_by(turn, state):
 
 
 @of_each_kind
-def test_motion_does_not_depend_on_the_units(kind, support, way):
+def test_motion_does_not_depend_on_the_units(kind, support):
     mass, length, time = 400.0, 1e-3, 30.0
     system, start, chosen = motion_of(kind, support, 1)
     half = len(start) // 2
     units = np.array([length, length, 1.0][:half] + [length / time, length / time, 1.0 / time][:half])
     other = in_units(system, mass, length, time)
-    found = simulate(other, start * units, TIMES * time, compiled=WAYS[way], **options(kind, other)).states
-    expected = simulate(system, start, TIMES, compiled=WAYS[way], **chosen).states
+    found = simulate(other, start * units, TIMES * time, **options(kind, other)).states
+    expected = simulate(system, start, TIMES, **chosen).states
     assert np.abs(found / units - expected).max() < OF_ALL_STEPS * 1e-9
 
 
 @of_each_kind
-def test_error_falls_in_proportion_to_the_tolerance(kind, support, way):
+def test_error_falls_in_proportion_to_the_tolerance(kind, support):
     system, start, chosen = motion_of(kind, support, 0)
     tight, *others = (
-        simulate(system, start, TIMES, tolerance=tolerance, compiled=WAYS[way], **chosen).states
+        simulate(system, start, TIMES, tolerance=tolerance, **chosen).states
         for tolerance in (1e-11, 1e-5, 1e-8)
     )
     for tolerance, states in zip((1e-5, 1e-8), others, strict=True):
@@ -112,9 +108,9 @@ def test_error_falls_in_proportion_to_the_tolerance(kind, support, way):
 
 
 @of_each_kind
-def test_friction_and_dampers_only_dissipate(kind, support, way):
+def test_friction_and_dampers_only_dissipate(kind, support):
     system, start, chosen = motion_of(kind, support, 0)
-    fine = simulate(system, start, np.linspace(0.0, 25.0, 2001), compiled=WAYS[way], **chosen)
+    fine = simulate(system, start, np.linspace(0.0, 25.0, 2001), **chosen)
     balance = power_balance(fine, **chosen)
     # An error of 1 % in any force exceeds 1e-3. Kinks of the rates between two samples cause less than 1e-4.
     assert np.abs(balance.residual).max() < 1e-4 * balance.turned_over

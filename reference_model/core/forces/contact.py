@@ -11,7 +11,8 @@ The integral of r·∂P over a disc contains the same integrals, so force and mo
 
 import math
 
-from reference_model.core.parts import part
+from reference_model.core.forces.law import OWN, Law
+from reference_model.core.parts import part, replaced_by
 
 AGREED = 1e-8
 """Relative difference of two means whose next means agree to rounding."""
@@ -87,3 +88,25 @@ def shares(slip: float, spin: float, outer: float, inner: float, load: float) ->
     hole_force, hole_moment = disc(slip, inner * spin)
     hole = load - 1.0
     return load * force - hole * hole_force, load * outer * moment - hole * inner * hole_moment
+
+
+def no_shares(slip: float, spin: float, law: Law) -> tuple[float, float]:
+    """Return no force, because compiled code does not know laws of the user."""
+    return math.nan, math.nan
+
+
+@replaced_by(no_shares)
+def own_shares(slip: float, spin: float, law: Law) -> tuple[float, float]:
+    """Return :func:`shares` of a law of the user."""
+    if slip == 0.0 and spin == 0.0:
+        return 0.0, 0.0
+    resistance, moment = law.own.shares(slip, spin)
+    return float(resistance), float(moment)
+
+
+@part
+def resisted(slip: float, spin: float, law: Law) -> tuple[float, float]:
+    """Return :func:`shares` of any law."""
+    if law.load == OWN:
+        return own_shares(slip, spin, law)
+    return shares(slip, spin, law.outer, law.inner, law.load)

@@ -9,6 +9,9 @@ from reference_model.systems import FloatArray
 CENTRE = -1
 """Index of the centre in place of a contact point."""
 
+OWN = -1.0
+"""``Law.load`` of a friction law that only interpreted runs know."""
+
 WIDTH = 7
 """Number of values per contact point."""
 
@@ -17,7 +20,8 @@ class Law(NamedTuple):
     """Scaled parameters, with forces divided by the mass.
 
     ``hold`` is the friction that can hold the centre at rest, negative if friction cannot hold the shaft's moment.
-    ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.forces.contact.shares`.
+    ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.forces.contact.shares`. A law of
+    the user, ``own``, has the load OWN; ``outer`` and ``inner`` are its resting radii.
     ``shaft`` is b/J, ``lag`` κ(ω − Ω), and ``gyration`` κ. ``stretch`` is s₀ of the stretched time.
 
     ``around`` contains seven numbers for each contact point: its position η (x, y) in the frame of the disc, divided
@@ -45,6 +49,7 @@ class Law(NamedTuple):
     gyration: float
     stretch: float
     around: FloatArray
+    own: Any
     point: int
     arm_x: float
     arm_y: float
@@ -60,8 +65,8 @@ def seen_from(point: int, sense: float, law: Law) -> Law:
         x, y, share = law.around[WIDTH * point], law.around[WIDTH * point + 1], law.around[WIDTH * point + 2]
     return Law(
         law.damping, law.stiffness, law.offset, law.hardening, law.gap, law.stop, law.friction, law.hold,
-        law.omega, law.outer, law.inner, law.load, law.shaft, law.lag, law.gyration, law.stretch, law.around, point,
-        x, y, share, sense,
+        law.omega, law.outer, law.inner, law.load, law.shaft, law.lag, law.gyration, law.stretch, law.around,
+        law.own, point, x, y, share, sense,
     )  # fmt: skip
 
 
@@ -73,7 +78,7 @@ def _unpacked() -> Any:
     namespace: dict[str, Any] = {"Law": Law}
     arguments = ", ".join(f"parameters[{i}]" for i in range(SCALARS))
     exec(
-        f"def unpacked(parameters, around):\n    return Law({arguments}, around, {CENTRE}, 0.0, 0.0, 1.0, 0.0)",
+        f"def unpacked(parameters, around):\n    return Law({arguments}, around, 0.0, {CENTRE}, 0.0, 0.0, 1.0, 0.0)",
         namespace,
     )
     return part(namespace["unpacked"])

@@ -6,7 +6,7 @@ radius of gyration κ. A pin is a disc without a radius, so its r stays zero.
 
 import math
 
-from reference_model.core.forces.contact import shares
+from reference_model.core.forces.contact import resisted
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.pivot import turning
 from reference_model.core.forces.points import centre_slip, friction_of_points, of_point
@@ -52,7 +52,7 @@ def friction(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple[fl
         over = law.friction / slip if slip > 0.0 else 0.0
         return -over * vx, -over * vy, 0.0, slip / (slip + law.stretch) if law.stretch > 0.0 else 1.0
     s = math.sqrt(slip * slip + r * r)
-    force, moment = shares(slip, abs(r), law.outer, law.inner, law.load)
+    force, moment = resisted(slip, abs(r), law)
     over = law.friction * force / slip if slip > 0.0 else 0.0
     return (
         -over * vx, -over * vy, -law.friction * math.copysign(moment, r),

@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from reference_model.core.rest import GRAZING, ROUNDING
 from reference_model.ensemble.core.contact_shares import LEAST, points_shares, ring_shares, turned
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.motion.stick import GRAZING, ROUNDING
 
 ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
 """Largest relative slip that counts as rounding, so that the body sticks."""

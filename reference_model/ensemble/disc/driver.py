@@ -1,4 +1,4 @@
-"""Ensembles of discs; the plain reference follows points that rest until all slip."""
+"""Ensembles of discs; single runs follow points that rest until all slip."""
 
 import math
 from collections.abc import Iterator
@@ -15,13 +15,12 @@ from reference_model.ensemble.disc.lanes import DiscSettings
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
 from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Results
 from reference_model.ensemble.task import OF_DISC, Task, in_chunks
-from reference_model.motion.exact import simulate_with
-from reference_model.motion.stepper import Thresholds
+from reference_model.simulation import simulate
 from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
-LEAST_SLIP = 0.1
-"""Duration of slip of all points before compiled code continues, in turns of the master disc or free centre."""
+SPAN = 1.2
+"""Duration of a single run in turns of the master disc or free centre: in a whole turn, stick is seen to last."""
 
 ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration."""
@@ -97,18 +96,16 @@ def _continue_until_slip(
 def _through_rest(
     disc: DiscOnDisc, state: FloatArray, t: float, duration: float, tolerance: float
 ) -> Iterator[tuple[Trajectory, bool]]:
-    """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
+    """Yield the motion from ``state`` at ``t`` by single runs until one ends in slip, or to the end.
 
     Each part has a flag: stick for a whole turn, which counts as permanent.
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration
-    span = (1.0 + 2.0 * LEAST_SLIP) * turn
+    span = SPAN * turn
     while t < duration:
         end = t + span if duration - (t + span) > ROUNDED * duration else duration
-        motion = simulate_with(
-            Thresholds(), disc, state, [t, end], tolerance=tolerance, slipping=LEAST_SLIP * turn
-        )
+        motion = simulate(disc, state, [t, end], tolerance=tolerance)
         t, state, last = float(motion.times[-1]), motion.at_end, motion.phases[-1]
         stuck = last.kind == "stick" and last.end - last.start >= turn
         yield motion, stuck

@@ -8,6 +8,8 @@ import math
 
 import numpy as np
 
+from reference_model.core.collocation import NODES
+from reference_model.core.stiff import FIRST_SPAN, LEAST_SPAN, RISING
 from reference_model.ensemble.core.contact_shares import LEAST, ring_shares
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import (
@@ -27,8 +29,6 @@ from reference_model.ensemble.core.stepping.implicit import (
 )
 from reference_model.ensemble.core.stepping.linear import length_of, zeros
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
-from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 HALVINGS = 60
@@ -170,7 +170,7 @@ def grown(
         rate[k] = first * along[k]
     w, f, power = zeros(NODES * 3).reshape(NODES, 3), zeros(NODES * 3).reshape(NODES, 3), zeros(NODES)
     t = turn = work = outward = 0.0
-    step = FIRST_STEP
+    step = FIRST_SPAN
     while t < longest:
         step = min(step, longest - t)
         for i in range(NODES):
@@ -181,7 +181,7 @@ def grown(
         error = step * _last_terms(f) if stiffness >= 0.0 else math.inf
         if not error < ACCURACY:
             step *= max(0.25, 0.8 * (ACCURACY / error) ** (1.0 / NODES))
-            if step < LEAST_STEP:
+            if step < LEAST_SPAN:
                 return z, 0j, 0.0, 0.0, 0.0, 0.0
             continue
         there = position_after(z, w, step, law)
@@ -197,7 +197,7 @@ def grown(
         for k in range(3):
             start[k], rate[k], along[k] = w[-1, k], f[-1, k], w[-1, k] / s
             rising += along[k] * rate[k]
-        if rising <= 0.0 or step * stiffness < STIFF:
+        if rising <= 0.0 or step * stiffness < RISING:
             break
         step *= min(4.0, 0.8 * (ACCURACY / max(error, 1e-30)) ** (1.0 / NODES))
     return z, complex(start[0], start[1]), start[2], t, turn, work

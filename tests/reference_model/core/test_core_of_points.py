@@ -11,13 +11,12 @@ from reference_model import DiscOnDisc, Points, simulate
 from reference_model.contact.contact_law import contact_of
 from reference_model.contact.limit_surface import PointsLimit
 from reference_model.core.collocation import jacobian_at, rates_at
-from reference_model.core.forces.law import seen_from, unpacked
+from reference_model.core.forces.law import seen_from
 from reference_model.core.forces.rates import growth
 from reference_model.core.limit import LEAST_SLIP, direction_of_points, pivot_from_rest, spare_of_points
 from reference_model.core.memory import seen
-from reference_model.core.run import advance
-from reference_model.core.single import compiled_core, law_of, simulate_by
-from reference_model.motion.nondimensional import Units
+from reference_model.core.single import law_of
+from reference_model.core.units import Units
 
 SEEDS = (*range(2, 50, 6), 188, 302)
 """Motions with all transitions between phases.
@@ -36,16 +35,7 @@ def kinds(run):
 
 def law_on(seed, contact=None):
     system = RandomMotion.of(seed).system
-    return unpacked(*law_of(system, contact_of(system, contact), UNIT))
-
-
-@pytest.mark.parametrize("seed", SEEDS)
-def test_motion_on_random_points_is_that_of_the_polar_equations(seed):
-    run, contact = RandomMotion.of(seed), random_points(seed)
-    found = simulate_by(compiled_core(), run.system, run.start, TIMES, contact=contact)
-    expected = simulate(run.system, run.start, TIMES, contact=contact)
-    assert np.abs(found.states - expected.states).max() < OF_ALL_STEPS * 1e-9
-    assert found.stick_times == pytest.approx(expected.stick_times, abs=1e-7)
+    return law_of(system, contact_of(system, contact), UNIT)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -53,7 +43,7 @@ def test_all_points_rest_in_stick_one_in_a_pivot_and_none_in_slip(seed):
     run, contact = RandomMotion.of(seed), random_points(seed)
     omega = run.system.disc_speed
     times = np.linspace(0.0, 25.0, 301)
-    found = simulate_by(compiled_core(), run.system, run.start, times, contact=contact)
+    found = simulate(run.system, run.start, times, contact=contact)
     for phase in found.phases:
         inside = (times > phase.start + 1e-3) & (times < phase.end - 1e-3)
         for x, y, angle, vx, vy, spin in found.states[inside].tolist():
@@ -65,7 +55,7 @@ def test_all_points_rest_in_stick_one_in_a_pivot_and_none_in_slip(seed):
 @pytest.mark.parametrize("seed", [5, 14])
 def test_motion_on_points_is_the_limit_of_motions_with_smooth_friction(seed):
     run, contact = RandomMotion.of(seed), random_points(seed)
-    found = simulate_by(compiled_core(), run.system, run.start, TIMES, contact=contact).states
+    found = simulate(run.system, run.start, TIMES, contact=contact).states
     coarse, fine = (smooth_motion(run.system, run.start, epsilon, contact) for epsilon in (1e-6, 2.5e-7))
     # For orders in ε from 0.7 on the limit is off by at most a third of the change.
     change = np.abs(fine - coarse).max()
@@ -135,7 +125,7 @@ def test_disc_whose_pull_exceeds_friction_by_a_hair_and_falls_slips_briefly(exce
     )  # fmt: skip
     v = 1j * omega * place
     start = [place.real, place.imag, 0.1, v.real, v.imag, omega]
-    found = simulate_by(advance, disc, start, [0.0, 1.0])
+    found = simulate(disc, start, [0.0, 1.0])
     assert kinds(found) == ["slip", "stick"]
     duration = 2.0 * excess * pull / -rate
     # The excess is known to rounding of the pull. The last 1e-6 of slip that is not in closed form count as linear.
@@ -149,10 +139,7 @@ def test_errors_of_an_undamped_motion_of_many_turns_do_not_add_up():
         contact_radius=0.2, shaft_damping=0.5, shaft_speed=20.8, contact_points=6,
     )  # fmt: skip
     start, times = [0.1, 0.0, 0.0, 0.03, 0.0, 20.8], np.linspace(0.0, 400.0, 41)
-    found, tight = (
-        simulate_by(compiled_core(), disc, start, times, tolerance=tolerance).states
-        for tolerance in (1e-9, 1e-12)
-    )
+    found, tight = (simulate(disc, start, times, tolerance=tolerance).states for tolerance in (1e-9, 1e-12))
     assert np.abs(found - tight).max() < 13e-9
 
 
@@ -166,7 +153,7 @@ def test_body_turns_about_a_resting_foot_and_stops():
     lever = 0.2 * abs(-0.08 + 0.04j) + 0.3 * abs(-0.07 - 0.05j)
     rate = load * lever / (body.polar_inertia + body.mass * foot**2)
     times = np.linspace(0.0, 1.2 * spin / rate, 61)
-    run = simulate_by(advance, body, [0.0, 0.0, 0.0, 0.0, -spin * foot, spin], times, contact=feet)
+    run = simulate(body, [0.0, 0.0, 0.0, 0.0, -spin * foot, spin], times, contact=feet)
     assert kinds(run) == ["pivot", "stick"]
     assert run.phases[1].start == pytest.approx(spin / rate, rel=1e-9)
     turning = np.minimum(times, spin / rate)

@@ -6,16 +6,14 @@ import subprocess
 import sys
 import threading
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from random_systems import TIMES, RandomMotion
 
-from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9
-from reference_model import Annulus, DiscOnDisc, PinOnDisc, Ring, simulate
+from compare.claims.parameters import FIG5, FIG5_STARTS
+from reference_model import Annulus, DiscOnDisc, PinOnDisc, simulate
 from reference_model.core import single
-from reference_model.core.run import advance
 
 SECOND = list(FIG5_STARTS.values())[1]
 """A start with nine stick phases."""
@@ -108,7 +106,7 @@ def test_compiled_code_computes_the_same_bits_as_python(seed):
     random = RandomMotion.of(seed)
     system, times = random.system, TIMES[TIMES < 4.0]
     found = simulate(system, random.start, times, compiled=True)
-    plain = single.simulate_by(advance, system, random.start, times)
+    plain = simulate(system, random.start, times, compiled=False)
     np.testing.assert_array_equal(found.states, plain.states)
     assert [phase.start for phase in found.phases] == [phase.start for phase in plain.phases]
 
@@ -122,16 +120,6 @@ def test_long_run_can_be_interrupted():
     with pytest.raises(KeyboardInterrupt):
         simulate(FIG5, start, [0.0, 1.4e6], compiled=True)
     assert time.process_time() - began < 1.0  # the whole run takes 2 s
-
-
-def test_default_run_without_a_contact_of_its_own_is_compiled():
-    six = replace(FIG9, contact_points=6, hardening=1.0)
-    start, times = [0.1, 0.0, 0.0, 0.0, 0.1, 0.0], [0.0, 1.0]
-    methods = [
-        simulate(six, start, times, contact=contact, compiled=None).solution.method
-        for contact in (None, Ring(0.1))
-    ]
-    assert [method.startswith("compiled") for method in methods] == [True, False]
 
 
 def test_digest_of_compiled_code_does_not_depend_on_the_order_of_imports():

@@ -12,7 +12,6 @@ from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9, FIG11
 from reference_model import DiscOnDisc, PinOnDisc, simulate
 from reference_model.ensemble import simulate_ensemble
 from reference_model.ensemble.disc import driver
-from reference_model.motion.exact import simulate_with
 
 SECOND = list(FIG5_STARTS.values())[1]
 """A start with nine stick phases."""
@@ -136,7 +135,7 @@ def test_creeping_ring_at_the_tightest_tolerance_comes_to_rest():
     assert abs(place[2] - place[1]) < 1e-11  # 2e-14 m/s for about 8 s
 
 
-def test_ensemble_of_points_uses_the_plain_reference_only_until_it_slips(monkeypatch):
+def test_ensemble_of_points_uses_single_runs_only_until_it_slips(monkeypatch):
     disc = DiscOnDisc(
         mass=1.0, polar_inertia=0.542, stiffness=1.0, damping=2.66, friction_force=8.11, disc_speed=-0.888,
         offset=1.48, contact_radius=2.23, shaft_damping=1.26, shaft_speed=-0.381, contact_points=6,
@@ -144,10 +143,10 @@ def test_ensemble_of_points_uses_the_plain_reference_only_until_it_slips(monkeyp
     parts = []
 
     def watched(*arguments, **options):
-        parts.append(simulate_with(*arguments, **options))
+        parts.append(simulate(*arguments, **options))
         return parts[-1]
 
-    monkeypatch.setattr(driver, "simulate_with", watched)
+    monkeypatch.setattr(driver, "simulate", watched)
     start = stuck_state(disc, -4.0, 0.0)
     end = simulate_ensemble(disc, start, duration=40.0, early_end=False).states[0]
     found = simulate(disc, start, [0.0, 40.0], compiled=True)

@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,11 +12,9 @@ from plain_engines import stuck_state
 from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, simulate
 from reference_model.contact.contact_law import Ring
+from reference_model.core import rest, slip, stiff
+from reference_model.core.forces import points
 from reference_model.formulas.disc import held_pin
-from reference_model.motion.exact import simulate_with
-from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.stepper import Thresholds
-from reference_model.motion.stick import _first_release
 from reference_model.systems import DiscOnDisc
 
 
@@ -60,7 +58,7 @@ def test_stuck_ring_is_released_like_a_pin_with_the_friction_that_the_moment_lea
         z = 0.05 * cmath.exp(1j * angle)
         trajectory = simulate(disc, stuck_state(disc, z.real, z.imag), [0.0, 5.0])
         if kinds(trajectory)[0] == "stick":
-            release = min(_first_release(SlipMotion.of(pin), z), 5.0)
+            release = simulate(pin, stuck_state(pin, z.real, z.imag), [0.0, 5.0]).phases[0].end
             assert trajectory.phases[0].end == pytest.approx(release, abs=1e-10)
             released += release < 5.0
     assert released >= 2
@@ -92,10 +90,20 @@ def sticky(request):
     return simulate(replace(STICKY, contact_points=request.param), STICKING, np.linspace(0.0, 12.0, 61))
 
 
+THRESHOLDS = (
+    *((slip, name) for name in ("REST_TIME", "REVERSAL", "COMMON_REST", "USUAL", "SLOW", "CREEP_SHARE")),
+    *((stiff, name) for name in ("BRIEF", "RISING", "FAST", "FIRST_SPAN")),
+    *((rest, name) for name in ("CREEP", "NARROW")),
+    (points, "CLOSE"),
+)
+"""Limits between the descriptions of slip."""
+
+
 @pytest.mark.parametrize("factor", [0.5, 2.0])
-def test_motion_does_not_depend_on_the_thresholds(sticky, factor):
-    other = Thresholds(**{name: factor * value for name, value in asdict(Thresholds()).items()})
-    changed = simulate_with(other, sticky.system, sticky.states[0], sticky.times)
+def test_motion_does_not_depend_on_the_thresholds(sticky, factor, monkeypatch):
+    for module, name in THRESHOLDS:
+        monkeypatch.setattr(module, name, factor * getattr(module, name))
+    changed = simulate(sticky.system, sticky.states[0], sticky.times, compiled=False)
     assert kinds(changed) == kinds(sticky)
     assert np.abs(changed.states - sticky.states).max() < 1e-8
     assert changed.stick_times == pytest.approx(sticky.stick_times, abs=1e-8)

@@ -10,9 +10,7 @@ from plain_engines import as_disc
 from plain_slip import slide
 
 from reference_model import PinOnDisc, SimulationError, simulate
-from reference_model.motion.exact import simulate_with
-from reference_model.motion.pin_equations import simulate_polar_form
-from reference_model.motion.stepper import Thresholds
+from reference_model.motion.polar_form import simulate_polar_form
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 TO_WHIRL = [0.1, 0.0, 0.03, 0.0]  # a start of Fig. 5
@@ -86,20 +84,6 @@ def test_slip_that_friction_cannot_hold_reverses_head_on_or_nearly(aside):
     assert np.abs(trajectory.states - exact.states).max() < 2.0 * aside + 1e-8
     assert kinds(trajectory) == ["slip"]
     assert trajectory.solution.evaluations < 5_000
-
-
-def test_run_that_ends_some_time_after_release_is_the_first_part_of_the_whole_run():
-    slipping, stuck, times = 0.03, [-0.03, 0.0, 0.0, -0.045], np.linspace(0.0, 20.0, 201)
-    whole = simulate(FIG_5, stuck, times)
-    part = simulate_with(Thresholds(), FIG_5, stuck, times, slipping=slipping)
-    released = whole.phases[0].end
-    assert kinds(part) == ["stick", "slip"]
-    # It ends with the step that contains this time.
-    assert released + slipping - 1e-12 < part.times[-1] < released + 2.0 * slipping + 0.2
-    np.testing.assert_array_equal(part.times[:-1], times[times < part.times[-1]])
-    np.testing.assert_allclose(part.states[:-1], whole.states[times < part.times[-1]], atol=1e-11)
-    ends = simulate(FIG_5, stuck, [0.0, part.times[-1]]).at_end
-    assert np.abs(part.at_end - ends).max() < 1e-9
 
 
 def test_motion_does_not_depend_on_the_requested_times():

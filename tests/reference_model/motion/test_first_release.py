@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from plain_engines import as_disc, pull_on_stuck_pin, stuck_state, turned_with_disc
 
 from reference_model import PinOnDisc, simulate
+from reference_model.contact.contact_law import Pin
+from reference_model.core.rest import _first_release, holds_for
+from reference_model.core.single import law_of
+from reference_model.core.units import Units
 from reference_model.ensemble.core import laws
 from reference_model.formulas import pin as formulas
-from reference_model.motion.pin_equations import SlipMotion
-from reference_model.motion.stick import _first_release, release_delay
 
 FIG_6 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.2, offset=0.1)
 coordinates = st.floats(-0.4, 0.4)
@@ -43,6 +45,10 @@ def stuck_pins(draw, linear):
     return replace(pin, friction_force=(1.0 + spare) * pull), complex(x, y)
 
 
+def law_on(pin):
+    return law_of(pin, Pin(), Units(1.0, 1.0))
+
+
 def in_compiled_code(pin, z):
     C, beta, load = (value / pin.mass for value in (pin.stiffness, pin.damping, pin.friction_force))
     return laws.release_delay(z, laws.PinLaw(C, beta, load, pin.disc_speed, pin.offset, 0.03, 0.0))
@@ -51,8 +57,8 @@ def in_compiled_code(pin, z):
 @pytest.mark.parametrize(
     ("release", "linear"),
     [
-        (lambda pin, z: _first_release(SlipMotion.of(pin), z), False),
-        (lambda pin, z: release_delay(SlipMotion.of(pin), z), True),
+        (lambda pin, z: _first_release(z.real, z.imag, 0.0, law_on(pin)), False),
+        (lambda pin, z: holds_for(z.real, z.imag, 0.0, law_on(pin)), True),
         (in_compiled_code, True),
         (lambda pin, z: formulas.release_time(pin, abs(z), math.atan2(z.imag, z.real)), True),
     ],

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.numerics import compiled_once
+from reference_model.numerics import cache_folders, compiled_once
 
 NAME = "a_package_of_a_test"
 FACTOR = "FACTOR = {}\n"
@@ -54,7 +54,7 @@ def package(tmp_path, monkeypatch):
     """Return a package with a kernel that uses a factor from another file."""
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     folder = tmp_path / NAME
     folder.mkdir()
     (folder / "__init__.py").touch()
@@ -65,7 +65,7 @@ def package(tmp_path, monkeypatch):
 
 def run():
     """Return the factor, and the numbers of kernels loaded and compiled, as in a new process."""
-    for known in (compiled_once.digest_of, compiled_once.folder_of):
+    for known in (cache_folders.digest_of, cache_folders.folder_of):
         known.cache_clear()
     for name in [name for name in sys.modules if name.startswith(NAME)]:
         del sys.modules[name]
@@ -102,7 +102,7 @@ def test_kernels_of_a_read_only_package_are_kept_in_the_cache_of_the_user(packag
 
 def test_kernel_runs_if_no_cache_can_be_written(package, tmp_path, monkeypatch):
     (tmp_path / "file").touch()
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "file"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
     assert run() == (2.0, 0, 1)
 
 
@@ -117,7 +117,7 @@ def test_long_compilation_is_reported_in_one_line(package, monkeypatch, capsys):
 
 
 def test_cache_directory_of_numba_does_not_change(package, tmp_path, monkeypatch):
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     run()
     assert str(tmp_path) == numba.config.CACHE_DIR
     assert list(tmp_path.glob(f"{NAME}-*/**/*.nbi"))
@@ -125,19 +125,19 @@ def test_cache_directory_of_numba_does_not_change(package, tmp_path, monkeypatch
 
 @pytest.mark.parametrize(
     ("days", "kept"),
-    [((0.1, 0.3, 0.6, 0.9, 1.2, 1.5), 4), ((10.0, 11.0, 12.0, 13.0, 14.0), compiled_once.VERSIONS - 1)],
+    [((0.1, 0.3, 0.6, 0.9, 1.2, 1.5), 4), ((10.0, 11.0, 12.0, 13.0, 14.0), cache_folders.VERSIONS - 1)],
     ids=["used during the last day", "the newest"],
 )
 def test_versions_of_the_sources_that_were_not_used_recently_are_deleted(days, kept, tmp_path, monkeypatch):
     package = tmp_path / "package"
     package.mkdir()
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     for age in days:
         old = tmp_path / f"package-{age}"
         old.mkdir()
         last = time.time() - 86_400.0 * age
         os.utime(old, (last, last))
-    now = Path(compiled_once.folder_of(package, compiled_once.digest_of(package)))
+    now = Path(cache_folders.folder_of(package, cache_folders.digest_of(package)))
     expected = {now.name, *(f"package-{age}" for age in days[:kept])}
     assert {path.name for path in tmp_path.glob("package-*")} == expected
 
@@ -193,7 +193,7 @@ def test_digest_of_functions_changes_with_their_text_and_constants_only():
     def digest(bound=1.0, sentence="Return twice x.", change=("", "")):
         namespace = {}
         exec(SOURCE.format(bound=bound, sentence=sentence).replace(*change), namespace)
-        return compiled_once.digest_of_text([namespace["double"]])
+        return cache_folders.digest_of_text([namespace["double"]])
 
     assert digest() == digest(sentence="Return 2x.") == digest(change=("def", "# a comment\n\ndef"))
     assert (

@@ -9,18 +9,19 @@ from collections.abc import Callable
 
 import numpy as np
 
+from reference_model.core import collocation
+from reference_model.core.collocation import NODES
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
 from reference_model.ensemble.core.stepping.linear import complex_zeros, length_of, solve, zeros
-from reference_model.motion.slip.breakaway import MOST_ITERATIONS
-from reference_model.numerics import collocation
-from reference_model.numerics.collocation import NODES
 from reference_model.systems import ComplexArray, FloatArray
 
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 LAST_TERM = np.array(collocation.FROM_START[NODES])
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
 """Nodes in [0, 1]."""
+
+MOST_ITERATIONS = 12
 
 APART = 1e-7
 """Relative change of slip for the derivative of friction."""

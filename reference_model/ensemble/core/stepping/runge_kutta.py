@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 import numba
 from scipy.integrate import DOP853
 
+from reference_model.core.single import LEAST
 from reference_model.ensemble.core.jit import inlined
-from reference_model.numerics.explicit import TIGHTEST
 
 intrinsic: Any = numba.extending.intrinsic  # not fully typed
 types: Any = numba.types
@@ -41,7 +41,7 @@ SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
 
 
 def tolerance_of_steps(tolerance: float) -> float:
-    return max(LOCAL * tolerance, TIGHTEST)
+    return max(LOCAL * tolerance, LEAST)
 
 
 # Machine instructions, one per term: loops over tuples would not become branch-free code.

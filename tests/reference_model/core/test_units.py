@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reference_model import DiscOnDisc
-from reference_model.motion.nondimensional import Units
+from reference_model.core.units import Units
 
 FREE = DiscOnDisc(
     mass=2.0, polar_inertia=0.5, stiffness=0.0, damping=0.0, friction_force=0.6, disc_speed=0.0, offset=0.0,

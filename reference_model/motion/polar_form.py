@@ -1,52 +1,15 @@
-"""Equations of motion of the pin on the rotating disc: eq. 1, and eq. 10 as a second formulation.
-
-The plane is complex, z = x + iy. A point of the disc moves with iωz, so the slip velocity is w = ż − iωz.
-"""
+"""Eq. 10, the motion of a slipping pin in polar coordinates: a second formulation."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from reference_model.support import Support, require_linear_support
-from reference_model.systems import FloatArray, PinOnDisc, System
-
-
-@dataclass(frozen=True)
-class SlipMotion:
-    """Eq. 1 for the slip velocity: ẇ = a(z, w) − g·w/|w|, ż = w + iωz.
-
-    ``damping`` is β/m in 1/s, ``support`` the support divided by the mass, with k² = C/m in 1/s² and X0 in m,
-    ``friction`` g = μN/m in m/s², and ``disc_speed`` ω in rad/s.
-    """
-
-    damping: float
-    support: Support
-    friction: float
-    disc_speed: float
-
-    @classmethod
-    def of(cls, system: System) -> SlipMotion:
-        return cls(
-            system.damping / system.mass,
-            Support.of(system).scaled(1.0 / system.mass),
-            system.friction_force / system.mass,
-            system.disc_speed,
-        )
-
-    def pull(self, z: complex, w: complex) -> complex:
-        """Return a(z, w), the acceleration by support and damper minus d(iωz)/dt = iωż, in m/s²."""
-        carried, drag = self._factors
-        return self.support.force(z) - drag * (w + carried * z)
-
-    @cached_property
-    def _factors(self) -> tuple[complex, complex]:
-        return 1j * self.disc_speed, self.damping + 1j * self.disc_speed
+from reference_model.support import require_linear_support
+from reference_model.systems import FloatArray, PinOnDisc
 
 
 def simulate_polar_form(

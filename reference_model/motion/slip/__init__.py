@@ -1,1 +1,0 @@
-"""Slip phases: coordinates, explicit and implicit steps, creep, and breakaway."""
