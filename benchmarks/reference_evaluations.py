@@ -10,14 +10,13 @@ import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from reference_model.motion.stick import release_delay
 from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
 
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from reference_model import simulate
-from reference_model.motion.polar_form import SlipMotion
+from reference_model.formulas import pin as formulas
 from reference_model.systems import FloatArray
 
 STARTS = tuple(FIG5_STARTS.values())
@@ -28,19 +27,19 @@ Outcome = tuple[int, FloatArray]
 
 
 def this_reference(start: Sequence[float]) -> Outcome:
-    """Run the reference: slip-polar coordinates and stretched time near rest, with output at 4001 times."""
+    """Run the reference, with output at 4001 times."""
     trajectory = simulate(FIG5, start, np.linspace(0.0, UNTIL, SAMPLES))
     return trajectory.solution.evaluations, trajectory.at_end
 
 
 def plain_events(start: Sequence[float]) -> Outcome:
     """Integrate x, y, vx, vy with a terminal event on slip speed; stick in closed form, output only at the end."""
-    motion = SlipMotion.of(FIG5)
+    omega = FIG5.disc_speed
     rest = 1e-9  # slip at which the pin counts as stuck, and its initial slip along the pull after release
     state, t, evaluations = np.array(start), 0.0, 0
 
     def slip(_: float, y: FloatArray) -> float:
-        return math.hypot(y[2] + motion.disc_speed * y[1], y[3] - motion.disc_speed * y[0]) - 0.5 * rest
+        return math.hypot(y[2] + omega * y[1], y[3] - omega * y[0]) - 0.5 * rest
 
     slip.terminal, slip.direction = True, -1.0  # type: ignore[attr-defined]
     while t < UNTIL:
@@ -51,11 +50,11 @@ def plain_events(start: Sequence[float]) -> Outcome:
         state, t = solution.y[:, -1], float(solution.t[-1])
         if t < UNTIL:
             z = complex(state[0], state[1])
-            delay = release_delay(motion, z)
+            delay = formulas.release_time(FIG5, abs(z), np.angle(z))
             t += delay
-            z *= np.exp(1j * motion.disc_speed * delay)
-            pull = motion.pull(z, 0.0)
-            v = 1j * motion.disc_speed * z + rest * pull / abs(pull)
+            z *= np.exp(1j * omega * delay)
+            pull = _acceleration(z, 1j * omega * z) + omega**2 * z
+            v = 1j * omega * z + rest * pull / abs(pull)
             state = np.array((z.real, z.imag, v.real, v.imag))
     return evaluations, state
 
@@ -66,13 +65,16 @@ def regularised(start: Sequence[float]) -> Outcome:
     return solution.nfev, solution.y[:, -1]
 
 
-def _eq1(epsilon: float) -> Callable[[float, FloatArray], FloatArray]:
-    motion = SlipMotion.of(FIG5)
+def _acceleration(z: complex, v: complex) -> complex:
+    """Return the acceleration by support and damper."""
+    return -(FIG5.stiffness * (z - FIG5.offset) + FIG5.damping * v) / FIG5.mass
 
+
+def _eq1(epsilon: float) -> Callable[[float, FloatArray], FloatArray]:
     def rates(_: float, y: FloatArray) -> FloatArray:
         z, v = complex(y[0], y[1]), complex(y[2], y[3])
-        w = v - 1j * motion.disc_speed * z
-        a = motion.pull(z, w) + 1j * motion.disc_speed * v - motion.friction * w / math.hypot(abs(w), epsilon)
+        w = v - 1j * FIG5.disc_speed * z
+        a = _acceleration(z, v) - FIG5.friction_force / FIG5.mass * w / math.hypot(abs(w), epsilon)
         return np.array((v.real, v.imag, a.real, a.imag))
 
     return rates

@@ -82,7 +82,7 @@ def main() -> None:
     for name, (system, start, duration) in MOTIONS.items():
         for n in TIMES:
             times = np.linspace(0.0, duration, n)
-            plain = milliseconds(partial(simulate, system, start, times))
+            plain = milliseconds(partial(simulate, system, start, times, compiled=False))
             fast = milliseconds(partial(simulate, system, start, times, compiled=True))
             table.add_row(name, f"{n:,}", f"{plain:.1f}", f"{fast:.2f}", f"{plain / fast:.0f}")
     Console().print(table)

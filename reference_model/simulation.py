@@ -5,13 +5,27 @@ from numpy.typing import ArrayLike
 from reference_model.contact.contact_law import Contact, contact_of
 from reference_model.core.run import follow
 from reference_model.core.single import compiled_core, is_compilable, is_compiled, simulate_by
-from reference_model.systems import System, checked_state, checked_times, checked_tolerance, require_flag
+from reference_model.systems import (
+    PinOnDisc,
+    System,
+    checked_state,
+    checked_times,
+    checked_tolerance,
+    require_flag,
+)
 from reference_model.trajectory import Trajectory
 
 COMPILATION = 30.0
 """Time in s that the interpreted runs of a process may take until it compiles, about as long as that takes."""
 
 _interpreted = 0.0
+
+
+def prepare() -> None:
+    """Compile now, unless this machine has the compiled code: for whatever will simulate many motions."""
+    if not is_compiled():
+        pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.0, disc_speed=0.0)
+        simulate(pin, [0.0] * pin.state_size, [0.0], compiled=True)
 
 
 def simulate(

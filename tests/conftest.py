@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from fmu_models import MODELS, archive
+from reference_model.simulation import prepare
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 FIXTURE = "browser_path"
@@ -29,6 +30,11 @@ def find_browser() -> str | None:
 
 def browser_tests_run() -> bool:
     return find_browser() is not None or bool(os.environ.get("CI"))
+
+
+def pytest_sessionstart() -> None:
+    if "PYTEST_XDIST_WORKER" in os.environ:  # many tests will simulate
+        prepare()
 
 
 def pytest_report_header() -> str:

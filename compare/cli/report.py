@@ -239,7 +239,9 @@ def _run(studies: tuple[Study, ...], engines: tuple[Engine, ...], output: Path, 
     """Measure the studies and show the progress, with the durations of the last report."""
     from compare.report.results_json import seconds_of_last_run
     from compare.run.runner import run
+    from reference_model.simulation import prepare
 
+    prepare()
     expected = seconds_of_last_run(output, Path(FULL))
     with measurements() as progress:
         more = options | {"folder": store_of(output), "expected": expected, "progress": progress}

@@ -29,7 +29,6 @@ from compare.engines.outside.program import Program
 from compare.engines.precision import COARSENING, USUAL_TOLERANCE
 from compare.engines.registry import (
     ByName,
-    compiled,
     engines,
     exudyn,
     exudyn_native,
@@ -64,7 +63,6 @@ __all__ = [
     "Simulate",
     "StatesOnly",
     "UnsupportedSystemError",
-    "compiled",
     "engines",
     "exudyn",
     "exudyn_native",

@@ -1,6 +1,5 @@
 """Engines by name: those of this project, of installed packages, and functions of modules."""
 
-import functools
 import importlib
 import os
 import sys
@@ -198,9 +197,7 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
-_simulate_reference = ByName("reference_model", "simulate")
-
-reference = register(Engine("reference", _simulate_reference, EVERY_KIND))
+reference = register(Engine("reference", ByName("reference_model", "simulate"), EVERY_KIND))
 exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
 exudyn_native = register(
     Engine(
@@ -214,16 +211,6 @@ exudyn_native = register(
         "that depend on the contact's own code: the contact alone, a motion of each kind, a whirl, and free bodies. "
         "With --engine exudyn-native it is measured in every study that it can simulate.",
     )
-)
-compiled = register(
-    Engine(
-        "compiled",
-        functools.partial(_simulate_reference, compiled=None),
-        EVERY_KIND,
-        kin="reference",
-        about="compiled is the reference by its compiled code.",
-    ),
-    on_request=True,
 )
 plain = register(
     Engine(

@@ -38,6 +38,9 @@ MOST_ITERATIONS = 14
 CONVERGED, NEAR = 1e-7, 1e-9
 """Last change in Newton's method, relative for slip and absolute for the rest, before the next is rounding error."""
 
+RELATIVE = 1e-3
+"""Largest error of slip relative to it, because slip that is small decides when it ends."""
+
 NOISE = 10.0
 """Change, in these units, that may be noise if it hardly falls."""
 
@@ -294,6 +297,6 @@ def error_of(coefficients: FloatArray, tolerance: float, law: Law) -> float:
     for v in range(6 if len(law.around) > 0 else 5):
         scale = tolerance * (1.0 + abs(end[v]) if v < 5 else 1.0) + ROUNDING * abs(end[v])
         if 2 <= v < slip:
-            scale = min(tolerance, 0.03 * s)
+            scale = min(tolerance, RELATIVE * s)
         error = max(error, abs(coefficients[NODES, v]) / scale, 0.1 * abs(coefficients[NODES - 1, v]) / scale)
     return error

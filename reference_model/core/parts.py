@@ -50,7 +50,11 @@ def register_parts() -> None:
         inline = {"forceinline": True, "_nrt": False} if each in INLINED else {}
         register_jitable(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **inline)(each)
     for each, other in REPLACED.items():
-        overload(each, strict=False)(lambda *_, other=other: other)
+        overload(each, strict=False)(_always(other))
+
+
+def _always(other: Callable[..., Any]) -> Callable[..., Any]:
+    return lambda *_: other
 
 
 def digest_with_parts(function: Callable[..., None]) -> str:

@@ -32,6 +32,9 @@ TURN = 1e-7
 CREEP = 1e-6
 """Largest distance and slip speed of creep in closed form."""
 
+NOISE = 4e-16
+"""Rounding error of the pull as a share of friction."""
+
 
 @part
 def strength(x: float, y: float, law: Law) -> float:
@@ -288,7 +291,12 @@ def creep_of(y: Unknowns, law: Law, most: float) -> tuple[float, float, float, f
     if not share > 0.0:
         return none
     way = share / slow + (s - share) / fast
-    if not way < CREEP or abs(_excess(y, n, way, law) / excess) * way > most:
+    # What is left where slip ends, where the pull has turned away from n
+    a = _grown(y, n, way, law)
+    along = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
+    across = a[0] * a[0] + a[1] * a[1] + a[2] * a[2] - along * along
+    left = max(abs(along) + 0.5 * across / law.friction - NOISE * law.friction, 0.0)
+    if not way < CREEP or left / excess * way > most:
         return none
     return share, slow, s - share, fast
 
@@ -296,9 +304,16 @@ def creep_of(y: Unknowns, law: Law, most: float) -> tuple[float, float, float, f
 @part
 def _excess(y: Unknowns, n: tuple[float, float, float], way: float, law: Law) -> float:
     """Return the growth of negligible slip after a ``way`` along ``n``."""
+    a = _grown(y, n, way, law)
+    return a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
+
+
+@part
+def _grown(
+    y: Unknowns, n: tuple[float, float, float], way: float, law: Law
+) -> tuple[float, float, float, float, float, float]:
     ux, uy = centre_slip(n[0], n[1], n[2], y[5], law)
-    a = growth(
+    return growth(
         y[0] + way * ux, y[1] + way * uy, LEAST_SLIP * n[0], LEAST_SLIP * n[1], LEAST_SLIP * n[2],
         y[5] + way * n[2] / law.gyration, law,
     )  # fmt: skip
-    return a[0] * n[0] + a[1] * n[1] + a[2] * n[2]

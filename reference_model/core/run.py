@@ -196,6 +196,6 @@ def slip_on(
     if creep[0] > 0.0:
         memory[STEPS] += 1.0
         return record_carried(seen(y, law, whole), end, creep, memory, times, out, whole), whole
-    if law.friction > 0.0 and memory[SHORT] >= memory[PATIENCE]:
+    if memory[SHORT] >= memory[PATIENCE]:
         return slip_stiffly(y, memory, tolerance, end, times, out, law), law
     return slide(y, memory, tolerance, end, work, times, out, law, K, F), law

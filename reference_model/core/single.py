@@ -77,6 +77,7 @@ class OwnLaw:
     gyration: float
 
     def shares(self, slip: float, spin: float) -> tuple[float, float]:
+        """Return force and moment over κ as shares of μN."""
         found = self.contact.shares(slip, spin / self.gyration)
         return found.resistance, found.moment / self.gyration
 
@@ -87,7 +88,7 @@ def compiled_core() -> Core:
     from reference_model.numerics.compiled_once import CompiledOnce
 
     register_parts()
-    kernel = CompiledOnce(advance, PACKAGE, digest_with_parts(advance))
+    kernel = CompiledOnce(advance, PACKAGE, _digest())
 
     def core(law: Law, *arguments: Any) -> None:
         kernel(*arguments, np.array(law[:SCALARS]), law.around)
@@ -97,7 +98,12 @@ def compiled_core() -> Core:
 
 def is_compiled() -> bool:
     """Return whether an earlier process or call on this machine has compiled the core."""
-    return has_files(PACKAGE, digest_with_parts(advance), advance.__name__)
+    return compiled_core.cache_info().currsize > 0 or has_files(PACKAGE, _digest(), advance.__name__)
+
+
+@functools.cache
+def _digest() -> str:
+    return digest_with_parts(advance)
 
 
 def is_compilable(contact: IsotropicContact | Points) -> bool:

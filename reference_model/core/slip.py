@@ -26,7 +26,7 @@ from reference_model.core.memory import (
 )
 from reference_model.core.parts import inlined, part
 from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
-from reference_model.core.rest import creep_of
+from reference_model.core.rest import NOISE, creep_of
 from reference_model.core.surfaces import crossing, grip, may_cross
 from reference_model.systems import FloatArray
 
@@ -34,7 +34,7 @@ REST_TIME = 1e-12
 """Largest error of the closed form for the time of coming to rest."""
 
 REVERSAL = 1e-13
-"""Slip below which slip that friction cannot hold counts as reversed."""
+"""Slip below which slip that friction cannot hold counts as reversed; less for a point if the spin is slow too."""
 
 USUAL = 0.02
 """A step is short if relative change of slip plus time are below this."""
@@ -57,7 +57,7 @@ NOWHERE, AT_END = -1, -2
 
 @part
 def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
-    """Return the time to rest if slip is about to end, 0 if it has ended to rounding error, -1 otherwise.
+    """Return the time to rest if slip is about to end, 0 if only rounding error is left of it, -1 otherwise.
 
     ``f`` are the rates in stretched time. A pivot ends at a surface instead.
     """
@@ -68,17 +68,17 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
     if fall <= 0.0:
         return -1.0
     left = s / fall
+    reversal = REVERSAL if law.point == CENTRE else REVERSAL * min(1.0, abs(y[4]) / SLOW)
     if left * left < REST_TIME:
         across, pace = 0.0, abs(law.omega) + law.shaft + 1.0
         for v in range(2, 5 if law.point == CENTRE else 4):
             across += (f[v] / f[6] + fall * y[v] / s) ** 2
         if law.point != CENTRE:
             pace += abs(y[4]) / law.gyration
-        if left * math.sqrt(across) / fall + left * left * pace < REST_TIME:
+        together = len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST
+        if left * math.sqrt(across) / fall + left * left * pace < REST_TIME or together or s < reversal:
             return left
-        if len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST:
-            return left
-    return 0.0 if s < REVERSAL else -1.0
+    return 0.0 if s < reversal and fall < 10.0 * NOISE * law.friction else -1.0
 
 
 @part
@@ -106,8 +106,6 @@ def creep_from(y: Unknowns, tolerance: float, law: Law) -> Creep:
 @part
 def slip_ends(y: Unknowns, f: Unknowns, memory: FloatArray, tolerance: float, law: Law) -> bool:
     """Return whether explicit steps should not go on."""
-    if law.friction == 0.0:
-        return False
     return (
         memory[SHORT] >= memory[PATIENCE] or time_left(y, f, law) >= 0.0 or creep_from(y, tolerance, law)[0] > 0.0
         or point_for(y, law) != law.point or ends_together(y, law)

@@ -48,6 +48,9 @@ WORK_OF_STEP = 50.0
 FAST = 2.0 / 3.0
 """Pace of stretched time where slip is so fast that friction turns it at the rate 1."""
 
+DAMPED = 3.0
+"""Step times the rates of the dampers below which they do not limit an explicit step."""
+
 RISING = 10.0
 """Rate of relaxation times the step below which an explicit method is as efficient."""
 
@@ -133,7 +136,7 @@ def slip_stiffly(
         fall = -along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) / s
         h *= min(2.0, 0.8 * max(error, 1e-16) ** -0.125)
         if (
-            a[3] > FAST
+            (a[3] > FAST and h * (law.damping + law.shaft) < DAMPED)
             or point_for(y, law) != law.point
             or (fall > 0.0 and s < fall * h)
             or creep_from(y, tolerance, law)[0] > 0.0

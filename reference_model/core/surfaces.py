@@ -106,13 +106,15 @@ def crossing(which: int, side: float, y: Unknowns, F: FloatArray, law: Law) -> f
     """Return the share of a step, with the interpolant ``F``, up to the crossing of a surface, or 1."""
     least = 0.0 if which in (SIDE_OF_GRIP, SIDE_OF_SPIN) else ON_SURFACE
     before, after, seen = 0.0, 1.0, side * value_of(which, y, law) > least
-    found = False
-    for i in range(1, PLACES + 1):
-        after = i / PLACES
+    turn, i, found = turning_back(which, F, law), 0, False
+    while i < PLACES and not found:
+        after = (i + 1) / PLACES
+        if before < turn < after:
+            after, turn = turn, 0.0
+        else:
+            i += 1
         beyond = side * value_of(which, inside(F, after), law) <= 0.0
-        if beyond and seen:
-            found = True
-            break
+        found = beyond and seen
         if not beyond:
             before, seen = after, True
     if not found:
@@ -122,6 +124,23 @@ def crossing(which: int, side: float, y: Unknowns, F: FloatArray, law: Law) -> f
         if middle <= before or middle >= after:
             return after
         if side * value_of(which, inside(F, middle), law) > 0.0:
+            before = middle
+        else:
+            after = middle
+
+
+@part
+def turning_back(which: int, F: FloatArray, law: Law) -> float:
+    """Return the share of a step where the value of a surface turns back, or 0."""
+    first = trend(which, inside(F, 0.0), law)
+    if not first * trend(which, inside(F, 1.0), law) < 0.0:
+        return 0.0
+    before, after = 0.0, 1.0
+    while True:
+        middle = 0.5 * (before + after)
+        if middle <= before or middle >= after:
+            return middle
+        if first * trend(which, inside(F, middle), law) > 0.0:
             before = middle
         else:
             after = middle

@@ -20,6 +20,7 @@ class Units:
 
     @property
     def speed(self) -> float:
+        """Unit of speed in m/s."""
         return self.length / self.time
 
     @classmethod
@@ -74,6 +75,7 @@ class Frame:
 
     @classmethod
     def of(cls, system: System, unit: Units) -> Frame:
+        """Return the conversion for these units."""
         lengths, speeds = [unit.length] * 2, [unit.speed] * 2
         if isinstance(system, DiscOnDisc):
             lengths.append(1.0)
@@ -93,6 +95,7 @@ class Frame:
         return [*(place / self.lengths).tolist(), *(relative / self.speeds).tolist()]
 
     def states(self, unknowns: FloatArray) -> FloatArray:
+        """Return states in SI units, shape (..., 4 or 6)."""
         place, relative = np.split(unknowns, 2, axis=-1)
         place = place * self.lengths
         return np.concatenate((place, relative * self.speeds + self._carried(place)), axis=-1)

@@ -13,7 +13,7 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from reference_model.trajectory import Trajectory
 
 Simulate = Callable[..., Trajectory]
 
-REFERENCE: Simulate = partial(simulate, compiled=None)
+REFERENCE: Simulate = simulate
 """Default engine, compiled because an orbit takes up to about a hundred simulations."""
 
 X, Y, VX, VY, SPIN = range(5)

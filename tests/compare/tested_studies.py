@@ -158,10 +158,9 @@ FREE_RING = Tested(
 
 BLOCK = Tested(
     STUDY["block"],
-    sound=("reference", "intact", "compiled", "plain"),
+    sound=("reference", "intact", "plain"),
     # slip to rest, stick, release, and none of them
     parts={
-        "compiled": ("stops", "holds", "lets_go", "swings"),
         "plain": ("slows", "pulled_along"),
     },
     few_of_faults=few({"headings": (22.5, 45.0)}, "slows", "stops", "lets_go", "cone", "pulled_along")

@@ -20,8 +20,8 @@ class Law(NamedTuple):
     """Scaled parameters, with forces divided by the mass.
 
     ``hold`` is the friction that can hold the centre at rest, negative if friction cannot hold the shaft's moment.
-    ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.forces.contact.shares`. A law of
-    the user, ``own``, has the load OWN; ``outer`` and ``inner`` are its resting radii.
+    ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.forces.contact.shares`. A law
+    of the user, ``own``, has the load OWN; ``outer`` and ``inner`` are its resting radii.
     ``shaft`` is b/J, ``lag`` κ(ω − Ω), and ``gyration`` κ. ``stretch`` is s₀ of the stretched time.
 
     ``around`` contains seven numbers for each contact point: its position η (x, y) in the frame of the disc, divided

@@ -19,8 +19,8 @@ from reference_model.simulation import simulate
 from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
-SPAN = 1.2
-"""Duration of a single run in turns of the master disc or free centre: in a whole turn, stick is seen to last."""
+FIRST_SPAN = 0.1
+"""Duration of the first single run in turns of the master disc or free centre; the next ones are twice as long."""
 
 ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration."""
@@ -102,7 +102,7 @@ def _through_rest(
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration
-    span = SPAN * turn
+    span = FIRST_SPAN * turn
     while t < duration:
         end = t + span if duration - (t + span) > ROUNDED * duration else duration
         motion = simulate(disc, state, [t, end], tolerance=tolerance)
@@ -111,5 +111,4 @@ def _through_rest(
         yield motion, stuck
         if last.kind == "slip":
             break
-        if stuck:
-            span = duration
+        span = duration if stuck else 2.0 * span

@@ -31,7 +31,6 @@ pytestmark = pytest.mark.usefixtures("all_in_this_process")
         ("exudyn", {"kind": "trajectory"}, "independent"),
         ("mypackage.mymodule:simulate", {"kind": "trajectory"}, "independent"),
         ("reference", {"kind": "trajectory"}, "self-check"),
-        ("compiled", {"kind": "trajectory"}, "self-check"),  # it shares the reference's closed forms
         ("reference", {"kind": "trajectory", "basis": "independent"}, "independent"),
         ("reference", {"kind": "conservation", "basis": "reference"}, "self-check"),
         ("exudyn", {"kind": "conservation", "basis": "reference"}, "independent"),

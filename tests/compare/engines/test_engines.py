@@ -21,7 +21,7 @@ from compare.studies import studies
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 
-@pytest.mark.parametrize(("name", "method"), [("compiled", "compiled"), ("plain", "Radau")])
+@pytest.mark.parametrize(("name", "method"), [("plain", "Radau")])
 def test_an_engine_on_request_takes_part_only_if_named(name, method):
     assert name not in [engine.name for engine in engines()]
     (engine,) = engines([name])

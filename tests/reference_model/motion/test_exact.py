@@ -113,8 +113,7 @@ def test_positions_reach_the_tolerance_on_a_disc_much_faster_than_the_natural_fr
 def test_motion_beyond_the_range_of_floats_raises_an_error():
     pin = replace(FIG_5)
     object.__setattr__(pin, "mass", 1e-300)  # the constructor refuses it
-    overflows = pytest.warns(RuntimeWarning, match="overflow|invalid value")
-    with overflows, pytest.raises(SimulationError, match="not finite"):
+    with pytest.raises(SimulationError, match="the integrator failed"):
         simulate(pin, [1.0, 0.0, 0.0, 0.0], [0.0, 1.0])
 
 
