@@ -1,23 +1,23 @@
 """Time saved by ``simulate(..., compiled=True)`` on single motions.
 
-Run with ``python benchmarks/single_runs.py``; takes about 30 s, more if the kernels are not compiled yet. Times are
+Run with ``python benchmarks/single_runs.py``; takes about 30 s, more if the core is not compiled yet. Times are
 the shortest processor times of several calls, in ms, at a tolerance of 1e-9.
 
 Measured on a busy machine, on a core with AVX-512:
 
-| motion | requested times | plain, ms | compiled, ms | ratio |
+| motion | requested times | in Python, ms | compiled, ms | ratio |
 |---|---|---|---|---|
-| Fig. 5, sticks nine times, to t = 500 s | 2 | 125 | 2.51 | 50 |
-| | 501 | 141 | 2.84 | 50 |
-| | 5,001 | 300 | 4.04 | 74 |
-| Fig. 11, ring, to t = 100 s | 2 | 10.8 | 0.38 | 28 |
-| | 501 | 20.7 | 0.49 | 42 |
-| | 5,001 | 20.3 | 0.82 | 25 |
-| the same with a hard stop | 5,001 | 25.5 | 0.86 | 30 |
-| Fig. 11, six points, to t = 100 s | 2 | 12.1 | 1.21 | 10 |
-| | 501 | 31.6 | 1.45 | 22 |
-| | 5,001 | 22.2 | 1.28 | 17 |
-| the same, starting with a point at rest | 501 | 224 | 3.75 | 60 |
+| Fig. 5, sticks nine times, to t = 500 s | 2 | 483 | 2.64 | 183 |
+| | 501 | 631 | 2.90 | 217 |
+| | 5,001 | 987 | 3.90 | 253 |
+| Fig. 11, ring, to t = 100 s | 2 | 19.6 | 0.38 | 52 |
+| | 501 | 59.8 | 0.49 | 122 |
+| | 5,001 | 165 | 0.81 | 204 |
+| the same with a hard stop | 5,001 | 196 | 0.85 | 230 |
+| Fig. 11, six points, to t = 100 s | 2 | 32.4 | 0.66 | 49 |
+| | 501 | 79.5 | 0.80 | 100 |
+| | 5,001 | 195 | 1.14 | 171 |
+| the same, starting with a point at rest | 501 | 342 | 2.30 | 149 |
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def milliseconds(call: Callable[[], object]) -> float:
 def main() -> None:
     """Print the table."""
     table = Table(title="One motion at a tolerance of 1e-9")
-    for column in ("motion", "times", "plain, ms", "compiled, ms", "ratio"):
+    for column in ("motion", "times", "in Python, ms", "compiled, ms", "ratio"):
         table.add_column(column, justify="left" if column == "motion" else "right")
     for name, (system, start, duration) in MOTIONS.items():
         for n in TIMES:

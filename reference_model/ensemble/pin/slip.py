@@ -170,6 +170,8 @@ def _along(
     rest, ends, risen = duration, False, False
     spacing, before, last = duration / PLACES, 0.0, False
     a, b, c = speed[1], speed[2], speed[3]
+    if a > 0.0 > b:  # slip may end as soon as it has begun
+        spacing = min(spacing, -0.5 * a / b)
     if c < 0.0 < b * b - 4.0 * a * c:
         soon = (b + math.sqrt(b * b - 4.0 * a * c)) / (-2.0 * c)
         spacing = min(spacing, 0.5 * soon) if soon > 0.0 else spacing

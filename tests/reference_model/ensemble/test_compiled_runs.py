@@ -1,11 +1,12 @@
 """Motions and phases of compiled runs and ensembles, against the plain reference and closed forms."""
 
+import cmath
 import functools
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from plain_engines import stuck_state
+from plain_engines import as_disc, stuck_state
 from random_systems import SYSTEMS, TIMES, RandomMotion
 
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9, FIG11
@@ -155,3 +156,18 @@ def test_ensemble_of_points_uses_single_runs_only_until_it_slips(monkeypatch):
     assert len(slips) > 5
     assert sum(by_reference) < 0.4 * sum(slips)
     assert np.max(np.abs(end - found.at_end)) < 1e-8  # of 4 m and 3.5 m/s
+
+
+@pytest.mark.parametrize("body", ["pin", "ring", "three points"])
+@pytest.mark.parametrize("excess", [1e-11, 1e-6, 1e-4, 3e-3])
+def test_body_whose_pull_exceeds_friction_by_a_hair_moves_in_an_ensemble_as_alone(excess, body):
+    omega, place, offset, damping = 0.5, 0.3 * cmath.exp(5.5j), 1.0, 0.1
+    pull = abs(offset + complex(omega**2 - 1.0, -damping * omega) * place)
+    pin = PinOnDisc(
+        mass=1.0, stiffness=1.0, damping=damping, friction_force=pull / (1.0 + excess), disc_speed=omega,
+        offset=offset,
+    )  # fmt: skip
+    system = pin if body == "pin" else as_disc(pin, {"ring": None, "three points": 3}[body])
+    start = stuck_state(system, place.real, place.imag)
+    found = simulate_ensemble(system, start, duration=5.0, early_end=False)
+    assert np.abs(found.states[0] - simulate(system, start, [0.0, 5.0]).at_end).max() < 1e-9
