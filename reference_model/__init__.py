@@ -11,33 +11,40 @@
 - ``core``: one trajectory by the same functions, interpreted or compiled;
 - ``ensemble``: compiled simulation of many trajectories;
 - ``numerics``: roots, continuation, collocation, and curves where a function changes sign.
+
+The public names are imported when they are used, so that the parameters alone can be used without SciPy.
 """
 
-from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import Ring, ThreeTermRing
-from reference_model.contact.points import Points, PointsOnRing
-from reference_model.formulas.pin import sticking_radius
-from reference_model.formulas.power_balance import PowerBalance, power_balance
-from reference_model.motion.pushing import Pushing
-from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
-from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
-from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
-from reference_model.orbits.shock import Shock, smallest_shock
-from reference_model.simulation import simulate
-from reference_model.steady.stability import onset_load
-from reference_model.steady.steady_states import (
-    SelfCentredEquilibrium,
-    SpinningEquilibrium,
-    SpinningWhirl,
-    Whirl,
-    self_centred_equilibria,
-    smallest_load_with_whirl,
-    whirls,
-    why_no_equilibrium,
-    why_no_whirl,
-)
-from reference_model.systems import DiscOnDisc, PinOnDisc
-from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from reference_model.contact.annulus import Annulus
+    from reference_model.contact.contact_law import Ring, ThreeTermRing
+    from reference_model.contact.points import Points, PointsOnRing
+    from reference_model.formulas.pin import sticking_radius
+    from reference_model.formulas.power_balance import PowerBalance, power_balance
+    from reference_model.motion.pushing import Pushing
+    from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
+    from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
+    from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
+    from reference_model.orbits.shock import Shock, smallest_shock
+    from reference_model.simulation import simulate
+    from reference_model.steady.stability import onset_load
+    from reference_model.steady.steady_states import (
+        SelfCentredEquilibrium,
+        SpinningEquilibrium,
+        SpinningWhirl,
+        Whirl,
+        self_centred_equilibria,
+        smallest_load_with_whirl,
+        whirls,
+        why_no_equilibrium,
+        why_no_whirl,
+    )
+    from reference_model.systems import DiscOnDisc, PinOnDisc
+    from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 __version__ = "0.1.0"
 """Version of all packages, read by ``pyproject.toml``."""
@@ -81,3 +88,23 @@ __all__ = [
     "why_no_equilibrium",
     "why_no_whirl",
 ]
+
+_HOMES = (
+    "systems", "trajectory", "contact.points", "contact.contact_law", "contact.annulus", "simulation", "formulas.pin",
+    "formulas.power_balance", "motion.pushing", "steady.stability", "steady.steady_states", "orbits",
+    "orbits.release_map", "orbits.basin_boundary", "orbits.shock",
+)  # fmt: skip
+"""The modules of these names; each is searched after those that it imports."""
+
+
+def __getattr__(name: str) -> Any:
+    if name in __all__:
+        modules = (import_module(f"{__name__}.{home}") for home in _HOMES)
+        return next(getattr(module, name) for module in modules if hasattr(module, name))
+    if not name.startswith("_") and find_spec(f"{__name__}.{name}"):
+        return import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
