@@ -20,6 +20,7 @@ from typing import IO
 
 from numpy.typing import ArrayLike
 
+from compare.engines.outside.commands import own_name
 from compare.engines.outside.json_lines import (
     BadLineError,
     Greeting,
@@ -30,7 +31,6 @@ from compare.engines.outside.json_lines import (
     question,
 )
 from compare.engines.outside.processor_time import PROGRAMS, is_over, processor_time_of
-from compare.engines.outside.program import own_name
 from compare.output.outside_text import cause_of_end, printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory

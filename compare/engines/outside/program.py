@@ -1,32 +1,21 @@
 """``exec:COMMAND``: a program in any language as an engine, connected by lines of JSON."""
 
-import importlib
 import os
-import re
 import shlex
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.machinery import BYTECODE_SUFFIXES, all_suffixes
-from pathlib import Path, PurePath
-from typing import Any
+from pathlib import Path
 
 from numpy.typing import ArrayLike
 
 from compare.engines.engine import Engine
+from compare.engines.outside import conversation
+from compare.engines.outside.commands import is_interpreter, name_of
 from compare.engines.registry import Scheme, register_scheme
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
-
-INTERPRETERS = re.compile(
-    r"(python|pypy|node|deno|bun|julia|ruby|perl|lua|php|java|mono|dotnet|octave|Rscript|sbcl|guile|sh|bash|env|wine)"
-    r"[\d.]*"
-)
-"""Interpreters, whose engines are named after the script."""
-
-
-def _conversation() -> Any:
-    return importlib.import_module("compare.engines.outside.conversation")
 
 
 @dataclass(frozen=True)
@@ -45,7 +34,7 @@ class Program:
         program, *arguments = self.command
         found = shutil.which(program) if not os.path.dirname(program) else os.path.join(self.folder, program)
         given = {path for word in arguments if (path := Path(self.folder, word)).is_file()}
-        if found is None or (_is_interpreter(program) and not given):
+        if found is None or (is_interpreter(program) and not given):
             return set()
         files = given | {Path(found)}
         for script in files if os.path.dirname(program) else given:
@@ -58,16 +47,13 @@ class Program:
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
         """Return the program's motion."""
-        trajectory: Trajectory = _conversation().simulate(
-            self.command, self.folder, system, initial_state, times, **accuracy
-        )
-        return trajectory
+        return conversation.simulate(self.command, self.folder, system, initial_state, times, **accuracy)
 
 
 def program_engine(text: str) -> Engine:
     """Return the engine "exec:TEXT" of the program's greeting; raise ``ValueError`` if it fails."""
     program = _program(text)
-    greeting = _conversation().greeting_of(program.command, program.folder)
+    greeting = conversation.greeting_of(program.command, program.folder)
     name = name_of(program.command)
     about = f"{name} runs the program {greeting.who}." if greeting.who else ""
     try:
@@ -79,7 +65,7 @@ def program_engine(text: str) -> Engine:
 def check_program(text: str) -> None:
     """Raise ``ValueError`` unless "exec:TEXT" names an existing program."""
     program = _program(text)
-    _conversation().check_command(program.command, program.folder)
+    conversation.check_command(program.command, program.folder)
 
 
 def _program(text: str) -> Program:
@@ -90,28 +76,6 @@ def _program(text: str) -> Program:
     if not command or not command[0]:
         raise ValueError(f"exec:{text}: give a command, for example exec:./my_engine")
     return Program(command, os.getcwd())
-
-
-def name_of(command: Sequence[str]) -> str:
-    """Return the name of an engine: the program's own name and its arguments."""
-    return " ".join([own_name(command), *_run(command)[1:]])
-
-
-def own_name(command: Sequence[str]) -> str:
-    """Return the name of the program or the script, without folder and extension."""
-    path = PurePath(_run(command)[0])
-    return path.stem if path.suffix.lstrip(".").isalpha() else path.name
-
-
-def _run(command: Sequence[str]) -> Sequence[str]:
-    if not _is_interpreter(command[0]):
-        return command
-    own = next((i for i, word in enumerate(command) if i > 0 and not word.startswith("-")), 0)
-    return command[own:]
-
-
-def _is_interpreter(program: str) -> bool:
-    return INTERPRETERS.fullmatch(PurePath(program).name.removesuffix(".exe")) is not None
 
 
 register_scheme("exec", Scheme(program_engine, check_program))
