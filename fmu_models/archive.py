@@ -21,7 +21,7 @@ from reference_model.systems import require_kind, require_whole
 
 FOLDER = Path(__file__).parent / "sources"
 
-SHARED = ("contact.c", "points.c", "unit.c", "integrator.c", "implicit.c")
+SHARED = ("contact.c", "points.c", "unit.c", "step.c", "integrator.c", "implicit.c")
 
 MADE = "variables.c"
 

@@ -10,7 +10,6 @@
 #define SAMPLES 8 /* intervals per step that are searched for an event */
 #define HALVINGS 40 /* bisections of a step in which points come to rest or are released */
 #define LET_GO 2.0  /* slip speed over epsilon that counts as release; integration errors reached 1.1 */
-#define DIRECTION 1e-3 /* largest velocity error over slip, which keeps the direction of friction accurate */
 #define AT_LIMIT 3.25 /* h times the largest eigenvalue near the explicit stability limit (IV.2 of II) */
 #define IN_A_ROW 15   /* number of such steps before the implicit method takes over */
 
@@ -25,18 +24,6 @@ static const double A[6][6] = {
 static const double C[6] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
 static const double E[7] = {71.0 / 57600,      0.0,          -71.0 / 16695, 71.0 / 1920,
                             -17253.0 / 339200, 22.0 / 525,   -1.0 / 40};
-
-void rates(State *s, double t, const double y[N], double f[N]) {
-    s->v[V_time] = t;
-    for (int i = 0; i < N; i++) s->v[STATES[i]] = y[i];
-    model_evaluate(s);
-    for (int i = 0; i < N; i++) f[i] = s->v[DERIVATIVES[i]];
-}
-
-double allowed(const State *s, const Step *one, int i) {
-    double size = s->tolerance * (s->nominal[i] + fmax(fabs(one->y[i]), fabs(one->end[i])));
-    return STATE_KINDS[i] == 'v' ? fmin(size, DIRECTION * fmax(one->slip, s->epsilon)) : size;
-}
 
 /* Counts explicit steps at the stability limit; last is the state of the last but one stage. */
 static void watch(State *s, const Step *one, const double last[N]) {
