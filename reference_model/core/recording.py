@@ -10,8 +10,8 @@ from reference_model.core.memory import EVALUATIONS, RECORDED, carried, pending,
 from reference_model.core.parts import part
 from reference_model.systems import FloatArray
 
-AS_GOOD = 20.0
-"""Largest error of the interpolant, in tolerances of a step, within the requested tolerance."""
+AS_GOOD = 1.0
+"""Largest error of the interpolant, in tolerances of a step: as small as at the ends of steps."""
 
 NEAR = 1e-8
 """Last correction in Newton's method, before the next one is rounding error."""

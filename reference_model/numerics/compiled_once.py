@@ -33,7 +33,7 @@ class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
     It runs without the interpreter lock. ``package`` is the folder of all sources compiled into it, and ``digest``
-    that of :func:`digest_of_text` if it is known.
+    that of :func:`reference_model.numerics.cache_folders.digest_of_text` if it is known.
     """
 
     def __init__(self, function: Callable[..., None], package: Path, digest: str = "") -> None:

@@ -400,7 +400,6 @@ def growing(system, initial_state, times, *, tolerance):
 
 ERROR_ESTIMATES = Tested(
     STUDY["error-estimates"],
-    few=few({"motions": 108}, "coverage", "over_estimate"),
     few_of_faults=few({"motions": 18}, "coverage", "over_estimate"),
     sound=("as reported",),
     gross={

@@ -154,7 +154,7 @@ def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
         if 0.0 < abs(v) < SOON * most:
             rate = (1.0 / k.time) * complex(k.ux, k.uy) + 1j * eta * arm * (k.r / k.time + 1j * r * spin)
             # Acceleration without its own friction, and the friction that would hold it, as in
-            # reference_model.motion.pivot.
+            # reference_model.core.forces.pivot.
             free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
             holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free
             falling = -(v.conjugate() * rate).real / abs(v)

@@ -1,6 +1,6 @@
 """Slip of a disc in lanes: eq. 19 to 21 in stretched time, and its end, rest and beginning.
 
-The unknowns are x, y, u, r and φ of :mod:`reference_model.motion.disc_equations`, and η = R/κ. In the stretched time
+The unknowns are x, y, u, r and φ of :mod:`reference_model.core.forces.rates`, and η = R/κ. In the stretched time
 dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations are smooth and not stiff down to s = 0.
 """
 
@@ -145,7 +145,7 @@ def _growth(beta: float, strength: float, law: DiscLaw) -> tuple[float, float, f
     return force * c + moment * s, moment * c - force * s, law.friction * power
 
 
-# --- Slip from rest, as in :mod:`reference_model.motion.slip.breakaway`
+# --- Slip from rest, as in :mod:`reference_model.core.stiff`
 
 ACCURACY = 1e-12
 """Allowed scaled contribution of the last terms of the polynomials."""

@@ -113,7 +113,7 @@ def begin_slip(
 ) -> tuple[complex, complex, float, float]:
     """Return position, slip velocity, duration and distance of slip from rest at ``z``; the slip is 0 if it ends.
 
-    It follows the series of ``stick.slip_from_rest`` while its last terms stay below ``tolerance``. ``work`` is
+    It follows a power series in time while the last terms stay below ``tolerance``. ``work`` is
     complex, of shape (6, MOST_TERMS + 2).
     """
     terms = TERMS

@@ -37,7 +37,7 @@ def test_list_shows_engines_and_studies_with_the_times_of_the_last_report(tmp_pa
         assert re.search(rf"^  verdicts +{seconds} s  full +every engine +{title}$", out, re.M)
         assert re.search(r"^  agreement +1.0 s  quick ", out, re.M)
     assert "\nEngines: reference, exudyn, exudyn-native\n" in out
-    assert "on request: compiled, plain, " in out
+    assert "on request: plain, " in out
     assert ", mujoco:pyramid" in out
 
 
