@@ -225,6 +225,27 @@ def test_a_process_that_is_interrupted_while_it_loads_says_so(tmp_path):
     assert (done.returncode, done.stderr) == (130, "Interrupted.\n")
 
 
+LOSING = """
+import signal, time, weakref
+from compare.cli import app
+
+def command(*arguments, **options):
+    thing = set()
+    lost = weakref.ref(thing, lambda _: signal.raise_signal(signal.SIGTERM))
+    del thing
+    time.sleep(60.0)
+
+app.app = command
+app.main([])
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
+def test_an_interrupt_that_a_callback_loses_is_repeated():
+    done = subprocess.run([REAL[0], "-c", LOSING], env=environment(), capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "Interrupted.\n")
+
+
 def test_a_process_ends_normally_without_a_reader():
     reader, writer = os.pipe()
     os.close(reader)
