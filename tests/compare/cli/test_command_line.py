@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, replace
 
 import fake_studies
+import matplotlib
 import numpy as np
 import pytest
 from processes import REAL, environment
@@ -129,7 +130,9 @@ def test_simulate_prints_a_table_or_writes_files(motion, tmp_path, monkeypatch, 
     assert content["solution"]["tolerance"] == 1e-9
 
 
-def test_simulate_draws_the_motion_in_place_of_a_table(tmp_path, capsys):
+def test_simulate_draws_the_motion_in_place_of_a_table(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(matplotlib.rcParams, "text.usetex", True)  # the user's own setting
+    monkeypatch.setenv("PATH", str(tmp_path))  # no LaTeX
     picture = tmp_path / "motion.pdf"
     assert cli.status(["simulate", "pin", *SIMULATE, "--plot", str(picture)]) == 0
     assert capsys.readouterr() == ("", "")
