@@ -17,7 +17,8 @@ from compare.claims.error_estimates import (
     refined,
 )
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.study import ByEngine, Data, Figures, Findings, Recorded, Study
+from compare.claims.study import ByEngine, Data, Figures, Findings, Study
+from compare.claims.validation import Recorded
 
 __all__ = [
     "COARSENING",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -17,12 +16,19 @@ from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose, Table, slug
-from compare.claims.validation import Validation
+from compare.claims.validation import Recorded, Validation
 from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError
 from compare.output.figures import Figure
 from compare.output.outside_text import Failure, printable
 from reference_model.orbits import NoOrbitError
-from reference_model.systems import FloatArray, System
+from reference_model.systems import (
+    FloatArray,
+    System,
+    positive_number,
+    require_flag,
+    require_kind,
+    require_system,
+)
 
 Data = dict[str, FloatArray]
 
@@ -57,32 +63,6 @@ class Findings:
         reasons = dict.fromkeys(f"{self.not_simulated}; {found.not_simulated}".strip("; ").split("; "))
         claims = (*self.claims, *found.claims)
         return Findings(claims, self.data | found.data, "; ".join(reasons), self.gaps | found.gaps)
-
-
-@dataclass(frozen=True)
-class Recorded:
-    """Recorded results for one setting of an engine, not measured in a run.
-
-    - ``setting``, ``date``: name of the setting ("" if there is only one), and date of the recording.
-    - ``own``: False if the friction is a user-defined force.
-    - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
-    - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
-    - ``advice``: refinement for a small error, or the error of the finest run, as a clause.
-    - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
-    """
-
-    engine: str
-    setting: str
-    version: str
-    date: str
-    claims: tuple[Claim, ...]
-    own: bool = True
-    cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    law: str = ""
-    says: str = ""
-    adapter: str = ""
-    advice: str = ""
-    whirl: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -163,6 +143,8 @@ class Study:
       out cases that depend on other code.
     - ``declared``: claims in the order of the report.
     - ``provided``: additional functions, see ``provides``.
+
+    Raises ``ValueError`` for an argument of another type.
     """
 
     name: str
@@ -175,6 +157,24 @@ class Study:
     contact: bool = False
     declared: list[Declared] = field(default_factory=list)
     provided: dict[str, Callable[..., Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        kinds: dict[str, tuple[type, ...]] = {
+            "name": (str,),
+            "prose": (Prose,),
+            "source": (str,),
+            "only": (tuple, list),
+        }
+        for name, allowed in kinds.items():
+            require_kind(name, getattr(self, name), *allowed)
+        for engine in self.only:
+            require_kind("only", engine, str)
+        if self.system is not None:
+            require_system(self.system)
+        positive_number("seconds", self.seconds, "s")
+        require_flag("quick", self.quick)
+        require_flag("contact", self.contact)
 
     @classmethod
     def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:

@@ -1,10 +1,15 @@
-"""A validation: a prediction of theory against a measured experiment.
+"""Results that a run does not measure: recorded ones of engines, and validations.
 
-It is not a verdict, because a friction law describes a real contact only to some extent. A validation states how much
-of the difference the known uncertainties explain (ASME V&V 20-2009).
+A validation compares a prediction of theory with a measured experiment. It is not a verdict, because a friction law
+describes a real contact only to some extent. A validation states how much of the difference the known uncertainties
+explain (ASME V&V 20-2009).
 """
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from compare.claims.claim import Claim
 
 EXPECTED = 0.95
 """Share of measurements within twice their standard uncertainty, if nothing but the known uncertainties acts."""
@@ -35,3 +40,29 @@ class Validation:
     factor: float
     model: float
     count: int
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Recorded results for one setting of an engine, not measured in a run.
+
+    - ``setting``, ``date``: name of the setting ("" if there is only one), and date of the recording.
+    - ``own``: False if the friction is a user-defined force.
+    - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
+    - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
+    - ``advice``: refinement for a small error, or the error of the finest run, as a clause.
+    - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
+    """
+
+    engine: str
+    setting: str
+    version: str
+    date: str
+    claims: tuple[Claim, ...]
+    own: bool = True
+    cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    law: str = ""
+    says: str = ""
+    adapter: str = ""
+    advice: str = ""
+    whirl: float = math.nan

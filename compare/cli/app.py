@@ -11,9 +11,10 @@ import io
 import os
 import signal
 import sys
+import threading
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 try:
     import typer
@@ -150,7 +151,18 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
             stream.reconfigure(encoding="utf-8" if unset else None, errors="backslashreplace")
     if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:  # end like Ctrl-C, which removes temporary files
         signal.signal(signal.SIGTERM, signal.default_int_handler)
+    sys.unraisablehook = _interrupt_again
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
+
+
+def _interrupt_again(lost: Any) -> None:
+    """Repeat Ctrl-C if it came in a callback, such as of a weak reference, which loses exceptions."""
+    if lost.exc_type is not KeyboardInterrupt:
+        sys.__unraisablehook__(lost)
+    elif threading.current_thread() is threading.main_thread():  # ``Threads`` repeats it for other threads
+        timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGTERM))
+        timer.daemon = True
+        timer.start()
 
 
 def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -> int:

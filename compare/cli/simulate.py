@@ -186,8 +186,10 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
 def _draw(trajectory: Trajectory, plot: Path) -> None:
     from matplotlib.figure import Figure
 
-    figure = trajectory.plot(Figure(figsize=(9.0, 5.2), layout="constrained"))
-    with _writing(plot, "wb") as stream:
+    from compare.output.figures import paper_style
+
+    with paper_style(), _writing(plot, "wb") as stream:
+        figure = trajectory.plot(Figure(figsize=(9.0, 5.2), layout="constrained"))
         figure.savefig(stream, format=plot.suffix[1:], dpi=150)
 
 

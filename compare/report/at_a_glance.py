@@ -6,7 +6,7 @@ from html import escape
 from urllib.parse import quote
 
 from compare.claims.claim import GRADES, Claim, Verdict
-from compare.claims.study import Recorded
+from compare.claims.validation import Recorded
 from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, State
 from compare.report.numbers import error_text
 from compare.run.runner import Run

@@ -11,8 +11,8 @@ from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
 from compare.claims.prose import slug
-from compare.claims.study import Declared, Findings, Recorded, Study
-from compare.claims.validation import Validation
+from compare.claims.study import Declared, Findings, Study
+from compare.claims.validation import Recorded, Validation
 from compare.engines import repeated_by, shares_code
 from compare.report.numbers import deciding, in_short
 from compare.run.provenance import ROOT

@@ -157,7 +157,7 @@ class Workers:
         """Wait for the first result or time limit, and yield all up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
         ends = [worker.limit - worker.spent() for worker in busy.values() if worker.limit is not None]
-        left = max(LOOKS_EVERY, min(ends)) if ends else None
+        left = max(LOOKS_EVERY, min(*ends, 3600.0)) if ends else None  # systems limit a wait
         ready = wait(list(busy), left) if busy else []
         for connection, worker in busy.items():
             if connection in ready:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import tempfile
 import zlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -157,6 +158,7 @@ def store_errors(url: str, action: str = "write to") -> Iterator[None]:
 PARTIAL = ".partial"  # suffix of files that Zarr left when its process was killed
 BLOCK = 64  # bytes that count for an empty file
 MOST_DESCRIBED = 1_000_000  # bytes of a description
+FULL = errno.ENOSPC, errno.EDQUOT
 
 
 def pack(folder: Path, archive: Path) -> None:
@@ -189,7 +191,7 @@ def member(archive: Path, name: str) -> bytes:
 def unpacked(archive: Path, most: int) -> tempfile.TemporaryDirectory[str]:
     """Return a temporary folder next to the archive with its readable files.
 
-    Raises ``ValueError`` if these have more than ``most`` bytes.
+    Raises ``ValueError`` if these have more than ``most`` bytes, and ``StoreError`` if the disk is full.
     """
     with ZipFile(archive) as content:
         if (size := sum(BLOCK + one.file_size for one in content.infolist())) > most:
@@ -198,6 +200,10 @@ def unpacked(archive: Path, most: int) -> tempfile.TemporaryDirectory[str]:
             )
         folder = tempfile.TemporaryDirectory(dir=archive.parent, prefix=f"{archive.stem}-")
         for name in content.namelist():
-            with suppress(BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError):
+            try:
                 content.extract(name, folder.name)
+            except (BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+                if isinstance(error, OSError) and error.errno in FULL:  # else the archive is damaged
+                    folder.cleanup()
+                    raise StoreError(f"cannot write to {folder.name!r}: {error.strerror}") from None
     return folder

@@ -58,7 +58,8 @@ class Threads(ThreadPoolExecutor):
         if kind is not None:
             self.shutdown(wait=False, cancel_futures=True)
             looks = 0
-            while self._at_work:
+            # a thread that is interrupted between its work and its note of that has ended
+            while self._at_work & {thread.ident for thread in threading.enumerate()}:
                 if looks % AGAIN == 0:
                     self._interrupt()
                 looks += 1

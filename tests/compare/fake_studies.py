@@ -15,7 +15,8 @@ import numpy as np
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.parameters import FIG5, FIG11
 from compare.claims.prose import Prose
-from compare.claims.study import Findings, Recorded, Study
+from compare.claims.study import Findings, Study
+from compare.claims.validation import Recorded
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import axis, curve, engines_in, new_figure, points
 from compare.output.outside_text import printable

@@ -44,6 +44,12 @@ def test_link_and_permissions_of_a_replaced_file_are_kept(file, tmp_path):
     assert alone(file)
 
 
+def test_an_error_of_the_disk_names_the_file(file):
+    with pytest.raises(OSError, match="full") as found, replacing(file):
+        raise OSError(errno.ENOSPC, "full")
+    assert found.value.filename == str(file)
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
 def test_a_pipe_is_written_directly(tmp_path):
     """A pipe stands for all devices. A fault in the code, run by root, would replace a real one."""

@@ -8,6 +8,8 @@ from compare.claims.as_json import claim_as_json, claim_from_json
 from compare.claims.claim import DOUBT, ErrorBudget, Grade, Verdict
 from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured
+from compare.claims.prose import Prose
+from compare.claims.study import Study
 from compare.report.numbers import account, decision, in_short, worst
 
 
@@ -175,6 +177,15 @@ def test_an_invalid_claim_is_rejected(predicted, measured, numerical, more, word
         (lambda: Measured(predicted=1.0, value=1.0, system="pin"), "^system = 'pin': it must be a PinOnDisc"),
         (lambda: refined(lambda tolerance: tolerance, -1.0), "^tolerance = -1.*: it must be > 0"),
         (lambda: refined(5), "^quantity = 5: it must be a function"),
+        (lambda: Study(5, Prose("A title")), "^name = 5: it must be a str"),
+        (lambda: Study("mine", "A title"), "^prose = 'A title': it must be a Prose"),
+        (lambda: Study("mine", Prose("A title"), system="pin"), "^system = 'pin': it must be a PinOnDisc"),
+        (lambda: Study("mine", Prose("A title"), seconds=-1.0), "^seconds = -1 s: it must be > 0"),
+        (
+            lambda: Study("mine", Prose("A title"), only="exudyn"),
+            "^only = 'exudyn': it must be a tuple or a list",
+        ),
+        (lambda: Study("mine", Prose("A title"), quick="yes"), "^quick = 'yes': it must be True or False"),
     ],
 )
 def test_wrong_arguments_of_measurements_are_refused(call, message):

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, replace
 
 import fake_studies
+import matplotlib
 import numpy as np
 import pytest
 from processes import REAL, environment
@@ -129,7 +130,9 @@ def test_simulate_prints_a_table_or_writes_files(motion, tmp_path, monkeypatch, 
     assert content["solution"]["tolerance"] == 1e-9
 
 
-def test_simulate_draws_the_motion_in_place_of_a_table(tmp_path, capsys):
+def test_simulate_draws_the_motion_in_place_of_a_table(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(matplotlib.rcParams, "text.usetex", True)  # the user's own setting
+    monkeypatch.setenv("PATH", str(tmp_path))  # no LaTeX
     picture = tmp_path / "motion.pdf"
     assert cli.status(["simulate", "pin", *SIMULATE, "--plot", str(picture)]) == 0
     assert capsys.readouterr() == ("", "")
@@ -222,6 +225,27 @@ def test_a_process_that_is_interrupted_while_it_loads_says_so(tmp_path):
     (tmp_path / "typer.py").write_text("raise KeyboardInterrupt")
     path = os.pathsep.join([str(tmp_path), environment()["PYTHONPATH"]])
     done = subprocess.run([*REAL, "list"], env=environment(PYTHONPATH=path), capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "Interrupted.\n")
+
+
+LOSING = """
+import signal, time, weakref
+from compare.cli import app
+
+def command(*arguments, **options):
+    thing = set()
+    lost = weakref.ref(thing, lambda _: signal.raise_signal(signal.SIGTERM))
+    del thing
+    time.sleep(60.0)
+
+app.app = command
+app.main([])
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
+def test_an_interrupt_that_a_callback_loses_is_repeated():
+    done = subprocess.run([REAL[0], "-c", LOSING], env=environment(), capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (130, "Interrupted.\n")
 
 

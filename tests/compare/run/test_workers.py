@@ -67,6 +67,7 @@ def test_temporary_files_of_a_process_are_removed_however_it_ends(end, argument,
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     with Workers(1, limit=3.0) as workers:
+        workers.ask(len, "")  # a process that has just started does not look idle
         workers.ask(leave_a_folder_and, end, argument)
     assert not list(tmp_path.iterdir())
 
@@ -94,6 +95,11 @@ def test_work_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
 @pytest.mark.skipif(
     not hasattr(time, "pthread_getcpuclockid"), reason="clocks of processes are a POSIX thing"
 )
+def test_a_limit_may_be_longer_than_a_system_can_wait():
+    with Workers(limit=1e308) as workers:
+        assert workers.ask(abs, -1) == 1
+
+
 def test_limits_count_the_processor_time_of_the_process_and_its_programs(workers):
     program = f"{sys.executable} -c 'import time; t = time.process_time() + 0.5\nwhile time.process_time() < t: pass'"
     for function, arguments in ((spend, (0.5,)), (os.system, (program,))):

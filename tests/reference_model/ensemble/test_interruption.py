@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -71,3 +72,18 @@ def test_an_exception_interrupts_python_code_in_threads():
         raise KeyboardInterrupt
     assert ended == [True]
     assert waiting.cancelled()
+
+
+def test_an_exception_that_arrives_as_the_work_ends_does_not_keep_the_pool_waiting():
+    class Interrupted(set):
+        def discard(self, thread):
+            raise KeyboardInterrupt
+
+    pool = Threads(1)
+    pool._at_work = Interrupted()
+    with pytest.raises(KeyboardInterrupt):
+        pool.submit(int).result()
+    leaving = threading.Thread(target=pool.__exit__, args=(KeyboardInterrupt, None, None), daemon=True)
+    leaving.start()
+    leaving.join(SOON)
+    assert not leaving.is_alive()

@@ -1,5 +1,6 @@
 """Messages for damaged stores, and their repair; ``test_sweep_store_states`` damages every file."""
 
+import errno
 import json
 import os
 import re
@@ -241,4 +242,19 @@ def test_an_archive_is_not_unpacked_beyond_what_it_describes(copied, monkeypatch
     capsys.readouterr()
     assert (resumed(copied), redrawn(copied)) == (2, 2)
     assert capsys.readouterr().err.count("but its description allows") == 2
+    assert sorted(copied.iterdir()) == before
+
+
+def test_a_disk_that_is_full_while_an_archive_is_unpacked_is_not_damage(copied, monkeypatch, capsys):
+    monkeypatch.setattr(store, "SMALL", 10)
+    assert resumed(copied) == 0
+    before = sorted(copied.iterdir())
+    capsys.readouterr()
+
+    def full(*arguments):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(ZipFile, "extract", full)
+    assert (resumed(copied), redrawn(copied)) == (2, 2)
+    assert capsys.readouterr().err.count("No space left on device\n") == 2
     assert sorted(copied.iterdir()) == before
