@@ -149,7 +149,8 @@ def _samples(system: System, first: float, last: float, per_turn: int) -> FloatA
 
 
 def _turn(system: System, duration: float) -> float:
-    return 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
+    rates = system.natural_frequency, abs(system.disc_speed)
+    return 2.0 * math.pi * min(duration, *(1.0 / rate for rate in rates if rate > 0.0), math.inf)
 
 
 def end_of(trajectory: Trajectory) -> EndState:
