@@ -145,7 +145,8 @@ def watched_until(system: System, certain: float, duration: float) -> float:
 
 
 def _samples(system: System, first: float, last: float, per_turn: int) -> FloatArray:
-    return np.linspace(first, last, math.ceil((last - first) / _turn(system, last) * per_turn) + 2)
+    turns = (last - first) / _turn(system, last) if last > first else 0.0
+    return np.linspace(first, last, math.ceil(turns * per_turn) + 2)
 
 
 def _turn(system: System, duration: float) -> float:
