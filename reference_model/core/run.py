@@ -153,7 +153,7 @@ def leave_rest(
     y: Unknowns, memory: FloatArray, tolerance: float, end: float, work: float, times: FloatArray, out: FloatArray,
     phases: FloatArray, law: Law, K: FloatArray, F: FloatArray,
 ) -> tuple[Unknowns, Law]:  # fmt: skip
-    """Follow a body of which a point or all rests until slip or a pivot has begun, or to the end of the run."""
+    """Follow a body that rests, wholly or in one point, until slip or a pivot has begun, or to the end of the run."""
     memory[WORK] += 1.0
     if pivots(y, memory, law):
         law = seen_from(law.point, math.copysign(1.0, y[4]), law)

@@ -12,6 +12,7 @@ from typing import Any, TypeVar, cast
 import numba
 import numba.extending
 
+from reference_model.numerics.cache_folders import digest_of
 from reference_model.numerics.compiled_once import CompiledOnce
 
 extending: Any = numba.extending  # not fully typed
@@ -23,7 +24,9 @@ INLINED: Any = {**PART, "forceinline": True}
 """Options of overloads."""
 
 SOURCES = Path(__file__).parents[2]
-"""Folder of all sources of a kernel, some of them outside ``ensemble``."""
+
+DIGEST = "-".join(digest_of(SOURCES / package) for package in ("ensemble", "core", "trajectory"))
+"""Digests of all sources that are compiled, or contain constants that are."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -50,7 +53,7 @@ def written_out(function: Function) -> Function:
 
 
 def called_from_python(function: Callable[..., None]) -> CompiledOnce:
-    return CompiledOnce(function, SOURCES)
+    return CompiledOnce(function, SOURCES, DIGEST)
 
 
 def generated(arguments: str, lines: Sequence[str]) -> Callable[..., Any]:
