@@ -291,7 +291,7 @@ def creep_of(y: Unknowns, law: Law, most: float) -> tuple[float, float, float, f
     if not share > 0.0:
         return none
     way = share / slow + (s - share) / fast
-    # What is left where slip ends, where the pull has turned away from n
+    # The rest of the growth at the end of slip; the pull has turned away from n
     a = _grown(y, n, way, law)
     along = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
     across = a[0] * a[0] + a[1] * a[1] + a[2] * a[2] - along * along
