@@ -26,8 +26,8 @@ from reference_model.trajectory import SimulationError
 LOCATED = 1e-12
 """Resolution of the time of a change, as a share of a step."""
 
-SOON = 1e-6
-"""Share of a step within which a secant finds the time of a change without a further try."""
+SOON = 1e-5
+"""Share of a step by which the roots of a line and a parabola may differ; that of the parabola is then much closer."""
 
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""
@@ -240,31 +240,28 @@ class _Run:
     def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
-        The secant through the two latest points finds it, or the Illinois method (Dowell & Jarratt, BIT 11 (1971)
-        168) within the interval.
+        Inverse interpolation through the latest points finds it, or the Illinois method within the interval (Dowell &
+        Jarratt, BIT 11 (1971) 168).
         """
         low, (above, below) = self._reached, margins
-        before: _Point = low, above
-        latest: _Point = high, below
-        soon = SOON * self._step
-        least, large = max(LOCATED * self._step, 4.0 * np.spacing(abs(high))), np.abs(below) + np.abs(above)
-        side = 0
+        points: list[_Point] = [(low, above), (high, below)]
+        least = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
+        side, large = 0, np.abs(below) + np.abs(above)
         for tried in range(MOST_CHANGES):
             ended = below < 0.0
-            secants = [(before, latest), ((low, np.maximum(above, 0.0)), (high, below))]
-            roots = next(
-                (root for root in (_roots(*pair, ended) for pair in secants) if low < root.min() < high),
-                np.where(ended, low, np.inf),
-            )
-            t = float(roots.min()) if tried % 4 < 3 else (low + high) / 2.0
+            within = [(low, np.maximum(above, 0.0)), (high, below)]
+            trials = [_roots(pair, ended) for pair in (points[-3:], points[-2:], within)]
+            roots = next((root for root in trials if low < root.min() < high), np.where(ended, low, np.inf))
+            found = float(roots.min())
+            t = found if tried % 4 < 3 else (low + high) / 2.0
             at_once = tried == 0 and t - low <= least
             t = min(max(t, low) + least / 2.0, high - least / 2.0)
-            first = int(roots.argmin())
-            is_root = abs(t - latest[0]) <= soon and abs(latest[1][first]) <= SMALL * large[first]
-            if is_root or at_once or high - low <= least:
+            is_close = max(abs(t - found), abs(t - trials[1].min())) <= SOON * self._step
+            is_small = (np.abs(points[-1][1]) <= SMALL * large)[roots.argmin()]
+            if (tried and is_close and is_small) or at_once or high - low <= least:
                 break
             now = self._try(t)
-            before, latest = latest, (t, now)
+            points.append((t, now))
             if (now < 0.0).any():
                 high, below, above, side = t, now, above if side <= 0 else above / 2.0, 1
             else:
@@ -318,11 +315,14 @@ class _Run:
             )
 
 
-def _roots(first: _Point, second: _Point, ended: NDArray[Any]) -> NDArray[Any]:
-    """Return the times (s) where lines through two margins vanish, infinite unless the mode has ``ended``."""
-    (before, above), (after, below) = first, second
+def _roots(points: Sequence[_Point], ended: NDArray[Any]) -> NDArray[Any]:
+    """Return the times (s) where margins vanish, by inverse interpolation; infinite unless the mode has ``ended``."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(ended, after - below * (after - before) / (below - above), np.inf)
+        times = sum(
+            t * np.prod([other / (other - margins) for _, other in points if other is not margins], axis=0)
+            for t, margins in points
+        )
+    return np.where(ended, times, np.inf)
 
 
 class _SensorRows:
