@@ -1,7 +1,7 @@
 """Contacts that stick exactly in an assembled model: their modes, and when each mode ends."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar, cast
@@ -77,6 +77,9 @@ class StickingContact:
     def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
         """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
         self.stick.mode = mode
+        if self.stick.entered == (mode, *locks):
+            return
+        self.stick.entered = mode, *locks
         for i, lock in enumerate(self.stick.locks):
             mbs.SetObjectParameter(lock, "activeConnector", i in locks)
         if (forces := self.stick.constant_forces) is not None:
@@ -127,22 +130,14 @@ class StickingContact:
         """Return whether static friction has vanished, or acts on an open contact."""
         return (holding == 0.0) != (self.mode == Mode.OPEN)
 
-    def rows(self, mbs: Any) -> FloatArray:
-        """Return the gradients of the locked slips for all velocities of the model."""
-        return self.widened(mbs, self.stick.rows)
+    def rows_and_bias(self, state: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Return the gradients of the locked slips, shape (k, n), and their rates without accelerations, shape (k,).
 
-    def widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        """Return gradients for all velocities of the model from those for the contact's nodes."""
-        data = mbs.systemData
-        coordinates = data.GetODE2Coordinates(exu.ConfigurationType.Initial)[self.places]
-        gradients = gradients_at(self.stick.reference + coordinates)
-        rows = np.zeros((len(gradients), data.ODE2Size()))
-        rows[:, self.places] = gradients
-        return rows
-
-    def bias(self, mbs: Any) -> FloatArray:
-        """Return the rates of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
-        return self.stick.bias(self._state(mbs))
+        ``state`` contains the coordinates of the model, without reference values, and their derivatives.
+        """
+        q, q_t = state
+        own = q[self.places], q_t[self.places], np.zeros(len(self.places))
+        return self.stick.rows(self.stick.reference + own[0]), self.stick.bias(own)
 
     def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return coordinates without reference values, and their derivatives."""
@@ -302,9 +297,11 @@ def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) ->
         return
     dynamics = Dynamics(mbs, times[0], 1.0)
     dynamics.evaluate(times[0])
+    start = mbs.systemData.GetODE2Coordinates(exu.ConfigurationType.Initial)
     joints, speeds = dynamics.gradients, dynamics.prescribed_speeds(times)
     for part in parts:
-        across = part.widened(mbs, part.planar.slip_map)[:2]
+        across = np.zeros((2, joints.shape[1]))
+        across[:, part.places] = part.planar.slip_map(part.stick.reference + start[part.places])[:2]
         across[np.abs(across) < NEGLIGIBLE] = 0.0
         part.planar.on_axis = part.planar.mean_radius > 0.0 and spanned(across, joints)
         if part.planar.on_axis and speeds.any():
@@ -319,7 +316,7 @@ def running(mbs: Any, contacts: Sequence[StickingContact]) -> Iterator[None]:
     """Let contacts stick and slide in a run, at first without friction."""
     try:
         for contact in contacts:
-            contact.stick.running, contact.stick.largest = True, 0.0
+            contact.stick.running, contact.stick.largest, contact.stick.entered = True, 0.0, ()
             contact.omit_user_functions(mbs)
             contact.enter(mbs, Mode.OPEN)
         yield

@@ -27,7 +27,7 @@ LOCATED = 1e-12
 """Resolution of the time of a change, as a share of a step."""
 
 SOON = 1e-5
-"""Share of a step by which the roots of a line and a parabola may differ; that of the parabola is then much closer."""
+"""Largest difference of the roots of a line and a parabola, as a share of a step; the parabola has a smaller error."""
 
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""
