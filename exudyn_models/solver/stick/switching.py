@@ -224,19 +224,6 @@ class _Run:
         data.SetTime(self._reached)
         self._sensors.switch(False)
 
-    def _try(self, t: float) -> FloatArray:
-        found = np.empty(0)
-
-        def look(time: float) -> bool:
-            nonlocal found
-            if time > self._reached:
-                found = np.array(self._modes.margins(time))
-                return False
-            return True
-
-        self._part(t, 1, look, write=False, keep=False)
-        return found
-
     def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
@@ -260,7 +247,8 @@ class _Run:
             is_small = (np.abs(points[-1][1]) <= SMALL * large)[roots.argmin()]
             if (tried and is_close and is_small) or at_once or high - low <= least:
                 break
-            now = self._try(t)
+            self._step_to(t, keep=False)
+            now = np.array(self._modes.margins(t))
             points.append((t, now))
             if (now < 0.0).any():
                 high, below, above, side = t, now, above if side <= 0 else above / 2.0, 1
@@ -298,8 +286,9 @@ class _Run:
                     contact.planar.frozen = False
         self._modes.end(contact for contact, _ in stopping)
 
-    def _step_to(self, t: float) -> None:
-        self._part(t, 1, lambda time: True, write=False, keep=True)
+    def _step_to(self, t: float, *, keep: bool = True) -> None:
+        start = self._reached
+        self._part(t, 1, lambda time: keep or time == start, write=False, keep=keep)
 
     def _note(self, before: Sequence[Mode]) -> None:
         """Record the changes of mode; raise ``SimulationError`` if they do not end."""
