@@ -9,7 +9,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice, pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray

@@ -275,7 +275,7 @@ class ModeChoice:
                 )
             self._data.SetAECoordinates(before[0])
             self._data.SetODE2Coordinates_tt(before[1])
-        return np.minimum(margins, left)
+        return np.minimum(margins, np.maximum(left, -1.0))  # finite where friction vanishes
 
     def _left(self, t: float) -> FloatArray:
         """Return the unused shares of capacities, 1 in slip; that of a one-way clutch is continuous."""
@@ -287,7 +287,7 @@ class ModeChoice:
             unused = np.minimum(limits[:, 1] + held, limits[:, 0] - held)
             left[resting.alone] = unused / np.maximum(limits[:, 0], limits[:, 1])
         for group in resting.groups:
-            share = max(1.0 - group.forces(t, 1.0 - NEAR)[1], -1.0)
+            share = 1.0 - group.forces(t, 1.0 - NEAR)[1]
             for contact in group.contacts:
                 left[self._contacts.index(contact)] = share
         return left

@@ -8,7 +8,6 @@ Joints may leave only some directions of slip, with the basis B, shape (3, k). T
 of the load, so the contact holds if any share lies within the limit surface of the potential P(B·v).
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

@@ -129,26 +129,22 @@ def _linear_friction(
 
 @compiled
 def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArray:
-    """Return the derivatives of coordinates; ω in the body's axes is not the derivative of a rotation vector v.
-
-    v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
-    """
     rates = q_t.copy()
     start = 0
     for kind in kinds[:2]:
         if kind == ROTATION_VECTOR:
             at = start + TRANSLATIONS[kind]
-            vector, spin = q[at : at + 3].copy(), q_t[at : at + 3].copy()
-            once = np.cross(vector, spin)
-            angle = math.sqrt(vector @ vector)
-            factor = 1.0 / 12.0
-            if angle > 1e-3:
-                factor = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle**2
-            twice = np.cross(vector, once)
-            for i in range(3):
-                rates[at + i] = spin[i] + 0.5 * once[i] + factor * twice[i]
+            rates[at : at + 3] = _rate_of_rotation_vector(q[at : at + 3].copy(), q_t[at : at + 3].copy())
         start += SIZES[kind]
     return rates
+
+
+@compiled
+def _rate_of_rotation_vector(vector: FloatArray, spin: FloatArray) -> FloatArray:
+    """Return v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v| and ω in the body's axes."""
+    once, angle = np.cross(vector, spin), math.sqrt(vector @ vector)
+    factor = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle**2 if angle > 1e-3 else 1.0 / 12.0
+    return spin + 0.5 * once + factor * np.cross(vector, once)
 
 
 @compiled
@@ -194,7 +190,7 @@ def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> F
             share *= 0.5
         if share <= ACCURACY:
             break
-        x, value = tried, pull @ tried - 0.5 * potential**2
+        x, value = tried, float(pull @ tried - 0.5 * potential**2)
         slopes = columns.T @ (np.outer(gradient, gradient) + curvature) @ columns
         change = np.linalg.solve(slopes, pull - potential * (columns.T @ gradient))
     return columns @ x
@@ -203,3 +199,4 @@ def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> F
 slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
 unit_friction, resisted_slip = KeptOnDisk(_unit_friction), KeptOnDisk(_resisted_slip)
 potential_terms = KeptOnDisk(_potential_terms)
+rate_of_rotation_vector = KeptOnDisk(_rate_of_rotation_vector)

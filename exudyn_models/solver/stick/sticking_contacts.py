@@ -22,6 +22,9 @@ from reference_model.systems import FloatArray
 STILL = 1e-8
 """Largest slip in m/s or rad/s of a contact at rest whose slip joints and prescribed motions determine."""
 
+LEAST = 1e-200
+"""Least capacity in N m: shares of loads stay finite if friction vanishes."""
+
 AHEAD = 1e-3
 """Time in s that shows whether a prescribed motion moves a contact."""
 
@@ -123,7 +126,7 @@ class StickingContact:
     def capacities(self, t: float) -> tuple[float, float]:
         """Return the largest moments in N m against sliding forward and backward, > 0 of a one-way clutch too."""
         forward, backward = self.stick.limits(t)
-        least = FREE * max(forward, backward)
+        least = max(FREE * max(forward, backward), LEAST)
         return max(forward, least), max(backward, least)
 
     def opens_or_closes(self, holding: float) -> bool:
