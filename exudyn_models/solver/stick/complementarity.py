@@ -191,17 +191,19 @@ def rest_or_slip(
         return left, moves
 
     slides = np.zeros(count, dtype=bool)
-    while (found := slips(slides)[1] & ~slides).any():
-        slides |= found
-    chosen = np.flatnonzero(slides)
-    if len(chosen) > 1 and (static > sliding).any():
+    left, moves = slips(slides)
+    if (static > sliding).any():
+        while (found := moves & ~slides).any():
+            slides |= found
+            left, moves = slips(slides)
+        chosen = np.flatnonzero(slides)
         fewer = (subset for size in range(1, len(chosen)) for subset in combinations(chosen, size))
         for subset in islice(fewer, SUBSETS):
-            others = np.isin(np.arange(count), subset, invert=True)
-            if not slips(~others)[1][others].any():
-                slides = ~others
+            rests = np.isin(np.arange(count), subset, invert=True)
+            found_left, found = slips(~rests)
+            if not found[rests].any():
+                left, moves = found_left, found
                 break
-    left, moves = slips(slides)
     for rows, moved in zip(sets.blocks, moves, strict=True):
         left[rows] *= moved
     return left

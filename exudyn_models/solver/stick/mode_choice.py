@@ -261,8 +261,10 @@ class ModeChoice:
         for i in self._varying:
             margins[i] = self._contacts[i].margin(self._mbs, t)
             self._limits[i] = self._contacts[i].capacities(t)
+        if not self._resting.rows:
+            return margins
         left = self._left(t)
-        least = left.min(initial=1.0)
+        least = left.min()
         if least < NEAR:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
             self._dynamics.evaluate(t)

@@ -151,20 +151,14 @@ class StickingContact:
             data.GetODE2Coordinates_tt(configuration)[places],
         )
 
-    def slip(self, mbs: Any, configuration: Any = CURRENT) -> float:
-        """Return S in rad/s."""
-        return self.stick.slip(*self._state(mbs, configuration)[:2])
-
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
         It is the slip in the direction of sliding (rad/s), 1 at rest, or ±1 without load or coefficient.
         """
-        stick, mode = self.stick, self.mode
-        limits = stick.limits(t)
-        if self.opens_or_closes(stick.without_rounding(max(limits))):
+        if self.opens_or_closes(self.holding(t)):
             return -1.0
-        return int(mode) * self.slip(mbs) if stick.slides else 1.0
+        return int(self.mode) * self.stick.slip(*self._state(mbs)[:2]) if self.stick.slides else 1.0
 
 
 class PlanarContact(StickingContact):

@@ -27,7 +27,7 @@ LOCATED = 1e-12
 """Resolution of the time of a change, as a share of a step."""
 
 SOON = 1e-5
-"""Largest difference between the roots of a line and a parabola, as a share of a step; the latter is more accurate."""
+"""Largest difference between the roots of a line and a parabola, as a share of a step; the latter is more exact."""
 
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""
@@ -202,8 +202,8 @@ class _Run:
                 self._accelerations = data.GetODE2Coordinates_tt()
                 return True
             now = self._modes.margins(t)
-            if min(now) < 0.0:
-                passed = t, (np.array(margins), np.array(now))
+            if now.min() < 0.0:
+                passed = t, (margins, now)
             if passed is not None or not self._slides.resolves(t - self._reached):
                 self._take_back()
                 return False
@@ -248,7 +248,7 @@ class _Run:
             if (tried and is_close and is_small) or at_once or high - low <= least:
                 break
             self._step_to(t, keep=False)
-            now = np.array(self._modes.margins(t))
+            now = self._modes.margins(t)
             points.append((t, now))
             if (now < 0.0).any():
                 high, below, above, side = t, now, above if side <= 0 else above / 2.0, 1
@@ -257,7 +257,7 @@ class _Run:
         if not at_once:
             t = high if high - low <= least else t
             self._step_to(t)
-        now = np.array(self._modes.margins(self._reached))
+        now = self._modes.margins(self._reached)
         ends = (now < 0.0) | (roots - t <= least)
         self._modes.end([self._contacts[i] for i in np.flatnonzero(ends)])
 
