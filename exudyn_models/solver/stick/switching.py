@@ -27,7 +27,7 @@ LOCATED = 1e-12
 """Resolution of the time of a change, as a share of a step."""
 
 SOON = 1e-5
-"""Largest difference between the roots of a line and a parabola, as a share of a step; the latter is more exact."""
+"""Largest difference between the roots of a line and a parabola, as a share of a step; the second is closer."""
 
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""

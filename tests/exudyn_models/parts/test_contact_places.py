@@ -45,7 +45,7 @@ def test_body_that_slides_and_pivots_rests_where_it_does_in_the_reference(exact)
 def test_points_that_stick_exactly_pivot_and_rest_as_in_the_reference(exact):
     """One foot rests first, and the body pivots about it until the others rest.
 
-    The error of the position is of second order; that of the first rest falls more slowly, because the turn of friction
+    The error of the position is of second order; that of the first rest falls more slowly, because friction turns and
     shortens some steps. The error of the last rest changes its sign near 150 steps, so it has no order there.
     """
     times = [phase.start for phase in exact.phases[1:]]
