@@ -146,7 +146,8 @@ class AxialStick:
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``point`` is the number of
     a point, from 1, of a contact at several points. ``on_axis`` is False if the bodies can slide sideways.
-    ``largest`` is the largest friction in the run. ``holds`` returns the forces of a contact at rest along its locks.
+    ``largest`` is the largest friction in the run, and ``entered`` the mode and the
+    held directions that Exudyn knows. ``holds`` returns the forces of a contact at rest along its locks.
     """
 
     kinds: Kinds
@@ -155,6 +156,7 @@ class AxialStick:
     static_ratio: float
     locks: tuple[int, ...] = ()
     mode: Mode | None = None
+    entered: tuple[Any, ...] = ()
     running: bool = False
     point: int | None = None
     on_axis: bool = True

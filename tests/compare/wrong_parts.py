@@ -33,7 +33,7 @@ from compare.studies.toolkit.drivetrain_bench import (
 from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.solver import linear_matrices
-from exudyn_models.solver.stick.complementarity import SharedLoad, largest_share
+from exudyn_models.solver.stick import resting
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring
@@ -269,11 +269,7 @@ def static_friction_off(factor):
 def unshared_load(patch):
     """Give the whole load to the contacts that are constraints, as if the others did not hold."""
 
-    def distribution(shared, held, limits):
-        forces = np.append(held, np.zeros(len(limits) - len(held)))
-        return forces, largest_share(forces, limits)
-
-    patch.setattr(SharedLoad, "distribution", distribution)
+    patch.setattr(resting, "least_maximum", lambda functions, start: 0.0 * start)
 
 
 def sensed_heat_off(factor):

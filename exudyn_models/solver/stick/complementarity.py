@@ -7,13 +7,11 @@ contact at a limit may slip against its force. Redundant contacts share a load, 
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations, islice, pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from reference_model.systems import FloatArray
 
@@ -34,9 +32,6 @@ PREFERRED = 1e3
 
 SMOOTH, CLOSE, ROUNDING = 1e-11, 1e-4, 1e-14
 """Last share of a slip acceleration that smooths friction, and tolerances of forces and of rounding errors."""
-
-ACTIVE = 1e-9
-"""Smallest multiplier of a share that determines the largest one."""
 
 
 def bounded_forces(
@@ -98,6 +93,8 @@ class Sets:
 
     def sizes(self, slips: FloatArray) -> FloatArray:
         """Return the size of the slip of each contact."""
+        if not any(self.laws):
+            return np.abs(slips)
         pairs = zip(self.blocks, self.laws, strict=True)
         return np.array([law(slips[rows])[0] if law else abs(slips[rows.start]) for rows, law in pairs])
 
@@ -194,17 +191,19 @@ def rest_or_slip(
         return left, moves
 
     slides = np.zeros(count, dtype=bool)
-    while (found := slips(slides)[1] & ~slides).any():
-        slides |= found
-    chosen = np.flatnonzero(slides)
-    if len(chosen) > 1 and (static > sliding).any():
+    left, moves = slips(slides)
+    if (static > sliding).any():
+        while (found := moves & ~slides).any():
+            slides |= found
+            left, moves = slips(slides)
+        chosen = np.flatnonzero(slides)
         fewer = (subset for size in range(1, len(chosen)) for subset in combinations(chosen, size))
         for subset in islice(fewer, SUBSETS):
-            others = np.isin(np.arange(count), subset, invert=True)
-            if not slips(~others)[1][others].any():
-                slides = ~others
+            rests = np.isin(np.arange(count), subset, invert=True)
+            found_left, found = slips(~rests)
+            if not found[rests].any():
+                left, moves = found_left, found
                 break
-    left, moves = slips(slides)
     for rows, moved in zip(sets.blocks, moves, strict=True):
         left[rows] *= moved
     return left
@@ -236,62 +235,3 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
     by_chosen = np.linalg.solve(gram[np.ix_(chosen, chosen)], gram[np.ix_(chosen, others)]).T
     by_chosen[np.abs(by_chosen) < DEPENDENT] = 0.0
     return chosen, np.asarray(by_chosen, float)
-
-
-@dataclass(eq=False)
-class SharedLoad:
-    """Load on contacts at rest that hold each other: the distribution with the least largest share of capacity.
-
-    Forces of the first contacts, which are constraints, hold it alone. ``by_chosen``, shape (p, c), relates the slips
-    of the p others to theirs.
-    """
-
-    by_chosen: FloatArray
-    _active: NDArray[Any] = field(default_factory=lambda: np.empty(0, int))
-
-    def distribution(self, held: FloatArray, limits: FloatArray) -> tuple[FloatArray, float]:
-        """Return all forces, shape (c + p,), and their largest share, for the forces ``held`` by the first alone.
-
-        ``limits``, shape (c + p, 2), are the largest forces against slip forward and backward.
-        """
-        others = len(self.by_chosen)
-        if not held.any():
-            return np.zeros(len(limits)), 0.0
-        to_forces = np.vstack((-self.by_chosen.T, np.eye(others)))
-        start = np.concatenate((held, np.zeros(others)))
-        # Rows are the conditions to_forces·x − share·limit <= −start, in both directions.
-        rows = np.vstack((to_forces, -to_forces))
-        right = np.concatenate((-start, start))
-        sizes = np.concatenate((limits[:, 1], limits[:, 0]))
-        rows = np.hstack((rows, -sizes[:, None]))
-        found = self._at_active(rows, right)
-        if found is None:
-            scale = max(np.abs(held).max(initial=0.0), np.finfo(float).tiny)
-            result = linprog(
-                np.eye(others + 1)[-1], rows, right / scale, bounds=[(None, None)] * others + [(0.0, None)]
-            )
-            self._active = np.flatnonzero(result.ineqlin.marginals < -ACTIVE / sizes.max())
-            found = self._at_active(rows, right)
-            if found is None:
-                found = scale * result.x
-        forces = start + to_forces @ found[:-1]
-        return forces, largest_share(forces, limits)
-
-    def _at_active(self, rows: FloatArray, right: FloatArray) -> FloatArray | None:
-        """Return the minimum at the conditions that determined the last one, or None if others do."""
-        if not len(self._active):
-            return None
-        active = rows[self._active]
-        found = np.linalg.lstsq(active, right[self._active], rcond=None)[0]
-        multipliers = np.linalg.lstsq(active.T, -np.eye(active.shape[1])[-1], rcond=None)[0]
-        is_minimum = np.abs(active.T @ multipliers + np.eye(active.shape[1])[-1]).max() < ACTIVE
-        tolerance = ACTIVE * np.abs(right).max()
-        if is_minimum and (multipliers >= 0.0).all() and (rows @ found <= right + tolerance).all():
-            return np.asarray(found)
-        return None
-
-
-def largest_share(forces: FloatArray, limits: FloatArray) -> float:
-    """Return the largest share of the ``limits`` against slip forward and backward that ``forces`` use."""
-    capacity = np.where(forces > 0.0, limits[:, 1], limits[:, 0])
-    return float(np.max(np.abs(forces) / capacity, initial=0.0))

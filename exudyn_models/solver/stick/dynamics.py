@@ -12,6 +12,7 @@ import numpy as np
 
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.starting_rates import initialised_solver
+from exudyn_models.solver.stick.slip_motion import rate_of_rotation_vector
 from reference_model.systems import FloatArray
 
 DIFFERENCE = 1e-2
@@ -114,16 +115,10 @@ class Dynamics:
         return self.inverse[: self._size, self._size :] @ -slips
 
     def _coordinate_rates(self) -> FloatArray:
-        """Return the derivatives of the coordinates; those of rotation vectors v are not the velocities ω.
-
-        v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
-        """
+        """Return the derivatives of the coordinates; those of rotation vectors are not the velocities."""
         q, rates = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
         for places, reference in self._rotations:
-            vector, spin = q[places] + reference, rates[places]
-            angle, once = np.linalg.norm(vector), np.cross(vector, spin)
-            factor = (1.0 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2 if angle > 1e-3 else 1.0 / 12.0
-            rates[places] = spin + 0.5 * once + factor * np.cross(vector, once)
+            rates[places] = rate_of_rotation_vector(q[places] + reference, rates[places])
         return np.asarray(rates)
 
     def forces(self) -> FloatArray:

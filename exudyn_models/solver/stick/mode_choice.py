@@ -86,7 +86,7 @@ class ModeChoice:
             if contact.free_to_slide:
                 self._dynamics.evaluate(t)
                 slips = Slips(self._mbs, self._dynamics, [contact])
-                slips.give(dict(enumerate((1.0 - first / motion.potential) * slips.now())), [])
+                slips.give(dict(enumerate((1.0 - first / motion.potential) * slips.now)), [])
         self._slides.starts = bool(self._first_slips)
 
     def end(self, ended: Iterable[StickingContact]) -> None:
@@ -107,31 +107,26 @@ class ModeChoice:
             contact.motion(self._mbs)
         self._dynamics.evaluate(t)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
-        limits = np.array([contact.holding(t) for contact in self._contacts])
-        bounds = slips.bounds(self._present()[1], limits)
-        still = slips.sets.sizes(slips.now()) <= slips.still(self._step, bounds)
+        self._holding = np.array([contact.holding(t) for contact in self._contacts])
+        self._limits = np.array([contact.capacities(t) for contact in self._contacts])
+        bounds = slips.bounds(self._present()[1], self._holding)
+        still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
         modes = [
-            Mode.LOCKED if at_rest or contact in self._ended else contact.sliding_mode(slips.now()[rows])
-            for contact, at_rest, rows in zip(self._contacts, still, slips.sets.blocks, strict=True)
+            Mode.LOCKED if at_rest or contact in self._ended else contact.sliding_mode(slips.now[rows])
+            for contact, at_rest, rows in zip(self._contacts, still.tolist(), slips.sets.blocks, strict=True)
         ]
         self._iterate(t, lambda: self._choose(t, slips, modes, bounds))
-        self._slipped.update(
-            contact
-            for contact, mode in zip(self._contacts, modes, strict=True)
-            if mode == Mode.LOCKED and contact.stick.slides
-        )
-        for contact, rows in zip(self._contacts, slips.sets.blocks, strict=True):
+        held = set(self._resting.rows)
+        for contact, mode, rows in zip(self._contacts, modes, slips.sets.blocks, strict=True):
+            if mode == Mode.LOCKED and contact.stick.slides:
+                self._slipped.add(contact)
             if contact.mode == Mode.LOCKED:
-                contact.enter(
-                    self._mbs,
-                    Mode.LOCKED,
-                    [i - rows.start for i in self._resting.rows if i in range(len(slips.rows))[rows]],
-                )
+                own = range(rows.start, rows.stop)
+                contact.enter(self._mbs, Mode.LOCKED, [i for i, row in enumerate(own) if row in held])
         firsts = [rows.start for rows in slips.sets.blocks]
         self._rows = slips.rows[firsts]
         self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
         self._offsets = 1.0 - np.abs(self._directions)
-        self._limits = np.array([contact.capacities(t) for contact in self._contacts])
         self.survey(t)
         self._slides.survey()
         self.end(())
@@ -157,13 +152,13 @@ class ModeChoice:
         configurations: Sequence[Any] = (CURRENT, exu.ConfigurationType.Initial),
     ) -> None:
         """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
-        holding = [contact.holding(t) for contact in self._contacts]
         for _ in range(ITERATIONS):
             forces, accelerations, constraints = solve()
-            before = np.concatenate((forces, holding))
+            before = np.concatenate((forces, self._holding))
             self._dynamics.store(accelerations, constraints, configurations)
-            holding = [contact.holding(t) for contact in self._contacts]
-            now = np.concatenate((self._dynamics.forces(), holding))
+            for i in self._varying:
+                self._holding[i] = self._contacts[i].holding(t)
+            now = np.concatenate((self._dynamics.forces(), self._holding))
             if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
                 return
         raise SimulationError(
@@ -176,8 +171,8 @@ class ModeChoice:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Enter the modes under the present loads; return these, accelerations and constraint forces."""
         contacts, blocks = self._contacts, slips.sets.blocks
-        for contact, mode in zip(contacts, modes, strict=True):
-            contact.enter(self._mbs, Mode.OPEN if contact.holding(t) == 0.0 else mode)
+        for contact, mode, holding in zip(contacts, modes, self._holding.tolist(), strict=True):
+            contact.enter(self._mbs, Mode.OPEN if holding == 0.0 else mode)
         still = [i for i, contact in enumerate(contacts) if contact.mode == Mode.LOCKED]
         _, accelerations, _ = self._present()
         found = self._slips_that_begin(t, slips, still, accelerations)
@@ -193,7 +188,7 @@ class ModeChoice:
                     slip / contact.planar.scales / slips.sets.sizes(found)[i]
                 )
                 begun.append(i)
-            elif slip[0] * slips.now()[own[0]] < 0.0:  # a rounding error
+            elif slip[0] * slips.now[own[0]] < 0.0:  # a rounding error
                 wanted[own[0]] = 0.0
         wanted |= self._first_slips_of(begun, slips, found, bounds)
         resting = [i for i in still if not found[blocks[i]].any()]
@@ -213,7 +208,9 @@ class ModeChoice:
         """Return the slip accelerations of the contacts ``still``, and zero for others."""
         contacts = [self._contacts[i] for i in still]
         rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
-        static = np.array([contact.capacities(t) for contact in contacts]).reshape(-1, 2)
+        for i in self._varying:
+            self._limits[i] = self._contacts[i].capacities(t)
+        static = self._limits[list(still)]
         ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
         overloads = np.array([contact in self._overloaded for contact in contacts])
         shrunk = (SHRUNK * overloads * static.max(axis=1, initial=0.0))[:, None]
@@ -264,8 +261,10 @@ class ModeChoice:
         for i in self._varying:
             margins[i] = self._contacts[i].margin(self._mbs, t)
             self._limits[i] = self._contacts[i].capacities(t)
+        if not self._resting.rows:
+            return margins
         left = self._left(t)
-        least = left.min(initial=1.0)
+        least = left.min()
         if least < NEAR:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
             self._dynamics.evaluate(t)
@@ -278,7 +277,7 @@ class ModeChoice:
                 )
             self._data.SetAECoordinates(before[0])
             self._data.SetODE2Coordinates_tt(before[1])
-        return np.minimum(margins, left)
+        return np.minimum(margins, np.maximum(left, -1.0))  # finite where friction vanishes
 
     def _left(self, t: float) -> FloatArray:
         """Return the unused shares of capacities, 1 in slip; that of a one-way clutch is continuous."""
@@ -290,7 +289,7 @@ class ModeChoice:
             unused = np.minimum(limits[:, 1] + held, limits[:, 0] - held)
             left[resting.alone] = unused / np.maximum(limits[:, 0], limits[:, 1])
         for group in resting.groups:
-            share = max(1.0 - group.forces(t, 1.0 - NEAR)[1], -1.0)
+            share = 1.0 - group.forces(t, 1.0 - NEAR)[1]
             for contact in group.contacts:
                 left[self._contacts.index(contact)] = share
         return left

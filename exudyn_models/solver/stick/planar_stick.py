@@ -8,7 +8,6 @@ Joints may leave only some directions of slip, with the basis B, shape (3, k). T
 of the load, so the contact holds if any share lies within the limit surface of the potential P(B·v).
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -124,20 +123,12 @@ class PlanarStick(AxialStick):
 
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
         """Return the share of ``friction`` (N) that a ``wrench`` needs, and the resisted slip with P = 1 m/s."""
-        contact, radius, load, columns = self.factors.geometry, self.mean_radius, -wrench, self.allowed
-        if columns.shape[1] == 0:
+        columns = np.ascontiguousarray(self.allowed)
+        if not (columns.T @ wrench).any():
             return 0.0, np.zeros(3)
-        if columns.shape[1] == self.most_locks:  # the slip of the centre has the direction of the force
-            force = math.hypot(load[0], load[1])
-            along = [load[0] / force, load[1] / force, 0.0] if force else [1.0, 0.0, 0.0]
-            columns = np.array([along, [0.0, 0.0, 1.0 / radius]] if radius else [along]).T
-        if columns.shape[1] == 1:
-            slip = columns[:, 0] * math.copysign(1.0, load @ columns[:, 0])
-        else:
-            slip = resisted_slip(load, np.ascontiguousarray(columns), contact)
-        slip = slip / self.potential_of(slip)
-        needed = float(load @ slip)
-        return needed / max(friction, needed / MOST_SHARE, TINY), slip
+        slip = resisted_slip(-wrench, columns, self.factors.geometry)
+        needed = self.potential_of(slip)
+        return needed / max(friction, needed / MOST_SHARE, TINY), slip / needed
 
     def holding_force(self, t: float) -> float:
         """Return the static friction in N."""

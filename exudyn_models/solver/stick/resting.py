@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.solver.items import CURRENT
-from exudyn_models.solver.stick.complementarity import SharedLoad, independent_rows
+from exudyn_models.solver.stick.complementarity import independent_rows
 from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
 from reference_model.systems import FloatArray
@@ -34,12 +34,8 @@ class Group:
     places: NDArray[Any]
     by_chosen: FloatArray
     _others: FloatArray = field(default_factory=lambda: np.empty(0))
-    _linear: SharedLoad | None = None
 
     def __post_init__(self) -> None:
-        if not any(isinstance(contact, PlanarContact) for contact in self.contacts):
-            self._linear = SharedLoad(self.by_chosen)
-            return
         to_forces = np.vstack((-self.by_chosen.T, np.eye(len(self.by_chosen))))
         effects = np.zeros((len(to_forces), len(to_forces)))
         for contact, rows in zip(self.contacts, self.blocks, strict=True):
@@ -55,8 +51,6 @@ class Group:
         """
         held = -self.mbs.systemData.GetAECoordinates()[self.places]
         limits = np.array([contact.capacities(t) for contact in self.contacts])
-        if self._linear is not None:
-            return self._linear.distribution(held, limits[np.argsort(np.concatenate(self.blocks))])
         start = np.concatenate((held, np.zeros(len(self.by_chosen))))
 
         def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:

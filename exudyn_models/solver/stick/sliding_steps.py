@@ -20,8 +20,8 @@ ON_GRID = 1e-9
 APPROACH = 0.9
 """Largest share of the slip that its acceleration could remove in a step."""
 
-TURN = 0.03
-"""Largest change of the direction of friction in a step."""
+TURN = 0.02
+"""Largest change of the direction of friction in a step; a twelfth of its square is the relative error."""
 
 
 class SlidingSteps:

@@ -24,10 +24,10 @@ from exudyn_models.forces.slip_kinematics import (
 from reference_model.systems import FloatArray
 
 ITERATIONS = 100
-"""Largest number of iterations for the direction of slip on the limit surface."""
+"""Largest number of iterations for the slip that a load pulls at."""
 
 ACCURACY = 1e-9
-"""Tolerance of this direction in rad; the load share has an error of second order in it."""
+"""Smallest share of an iteration; the load share has an error of second order in the slip."""
 
 RESOLVED = 1e-6
 """Smallest slip with a reliable direction, relative to the speeds of both bodies."""
@@ -129,26 +129,22 @@ def _linear_friction(
 
 @compiled
 def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArray:
-    """Return the derivatives of coordinates; ω in the body's axes is not the derivative of a rotation vector v.
-
-    v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
-    """
     rates = q_t.copy()
     start = 0
     for kind in kinds[:2]:
         if kind == ROTATION_VECTOR:
             at = start + TRANSLATIONS[kind]
-            vector, spin = q[at : at + 3].copy(), q_t[at : at + 3].copy()
-            once = np.cross(vector, spin)
-            angle = math.sqrt(vector @ vector)
-            factor = 1.0 / 12.0
-            if angle > 1e-3:
-                factor = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle**2
-            twice = np.cross(vector, once)
-            for i in range(3):
-                rates[at + i] = spin[i] + 0.5 * once[i] + factor * twice[i]
+            rates[at : at + 3] = _rate_of_rotation_vector(q[at : at + 3].copy(), q_t[at : at + 3].copy())
         start += SIZES[kind]
     return rates
+
+
+@compiled
+def _rate_of_rotation_vector(vector: FloatArray, spin: FloatArray) -> FloatArray:
+    """Return v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v| and ω in the body's axes."""
+    once, angle = np.cross(vector, spin), math.sqrt(vector @ vector)
+    factor = (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle**2 if angle > 1e-3 else 1.0 / 12.0
+    return spin + 0.5 * once + factor * np.cross(vector, once)
 
 
 @compiled
@@ -177,34 +173,30 @@ def _potential_terms(slip: FloatArray, contact: Contact) -> tuple[float, FloatAr
 
 @compiled
 def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> FloatArray:
-    """Return the slip w in the span of two ``columns`` with the greatest load·w/P(w).
+    """Return the slip w in the span of ``columns`` with the greatest load·w − P(w)²/2, by Newton's method.
 
-    P is convex, so there is one maximum between the directions without power. The Illinois method finds it (Dowell &
-    Jarratt, BIT 11 (1971) 168).
+    P(w) is then the greatest load·w/P(w).
     """
-    first, second = columns[:, 0].copy(), columns[:, 1].copy()
-    middle = math.atan2(load @ second, load @ first)
-    low, high = middle - 0.5 * math.pi, middle + 0.5 * math.pi
-    below, above = -1.0, 1.0
-    side, angle = 0, middle
-    for i in range(ITERATIONS):
-        slip = math.cos(angle) * first + math.sin(angle) * second
-        turn = math.cos(angle) * second - math.sin(angle) * first
-        fx, fy, moment = _unit_friction(slip, contact)
-        potential = -(fx * slip[0] + fy * slip[1] + moment * slip[2])
-        change = -(fx * turn[0] + fy * turn[1] + moment * turn[2])
-        slope = change * (load @ slip) - potential * (load @ turn)
-        if slope == 0.0 or high - low < ACCURACY:
+    pull = columns.T @ load
+    x, value = np.zeros(len(pull)), 0.0
+    change = np.linalg.solve(columns.T @ columns, pull)
+    for _ in range(ITERATIONS):
+        share = 1.0
+        while share > ACCURACY:
+            tried = x + share * change
+            potential, gradient, curvature = _potential_terms(columns @ tried, contact)
+            if pull @ tried - 0.5 * potential**2 > value:
+                break
+            share *= 0.5
+        if share <= ACCURACY:
             break
-        if slope < 0.0:
-            low, below, above, side = angle, slope, above if side >= 0 else above / 2.0, -1
-        else:
-            high, above, below, side = angle, slope, below if side <= 0 else below / 2.0, 1
-        share = 0.5 if i % 4 == 3 or i == 0 else below / (below - above)
-        angle = min(max(low + share * (high - low), low + ACCURACY / 2.0), high - ACCURACY / 2.0)
-    return slip
+        x, value = tried, float(pull @ tried - 0.5 * potential**2)
+        slopes = columns.T @ (np.outer(gradient, gradient) + curvature) @ columns
+        change = np.linalg.solve(slopes, pull - potential * (columns.T @ gradient))
+    return columns @ x
 
 
 slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
 unit_friction, resisted_slip = KeptOnDisk(_unit_friction), KeptOnDisk(_resisted_slip)
 potential_terms = KeptOnDisk(_potential_terms)
+rate_of_rotation_vector = KeptOnDisk(_rate_of_rotation_vector)

@@ -26,12 +26,16 @@ class Slips:
 
     def __init__(self, mbs: Any, dynamics: Dynamics, contacts: Sequence[StickingContact]) -> None:
         self._data, self._dynamics = mbs.systemData, dynamics
-        size = self._data.ODE2Size()
-        own = [contact.rows(mbs) for contact in contacts]
-        ends = np.cumsum([0, *map(len, own)]).tolist()
+        state = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
+        size, self._velocities = len(state[0]), state[1]
+        own = [contact.rows_and_bias(state) for contact in contacts]
+        ends = np.cumsum([0, *(len(bias) for _, bias in own)]).tolist()
         self.sets = Sets([slice(*pair) for pair in pairwise(ends)], [contact.law for contact in contacts])
-        self.rows = np.vstack([np.empty((0, size)), *own])
-        self._bias = np.concatenate([np.empty(0), *(contact.bias(mbs) for contact in contacts)])
+        self.rows, self._bias = np.zeros((ends[-1], size)), np.zeros(ends[-1])
+        for contact, rows, (gradients, bias) in zip(contacts, self.sets.blocks, own, strict=True):
+            self.rows[rows, contact.places], self._bias[rows] = gradients, bias
+        #: Slips (m/s or rad/s) before any change by ``give``.
+        self.now = self.rows @ self._velocities
         self._to_velocities = dynamics.inverse[:size, :size] @ self.rows.T
         self.to_rates = self.rows @ self._to_velocities
         lengths = self.rows**2 @ mobilities(dynamics.mass)
@@ -42,11 +46,6 @@ class Slips:
             if isinstance(contact, PlanarContact):
                 contact.allow(self.to_rates[rows, rows], lengths[rows])
         self._resolution = np.array([contact.resolution for contact in contacts])
-        self._velocities = self._data.GetODE2Coordinates_t()
-
-    def now(self) -> FloatArray:
-        """Return the slips (m/s or rad/s) before any change by ``give``."""
-        return np.asarray(self.rows @ self._velocities)
 
     def bounds(self, accelerations: FloatArray, limits: FloatArray) -> FloatArray:
         """Return the largest slip acceleration of each contact under friction up to ``limits``, shape (contacts,)."""
@@ -86,7 +85,7 @@ class Slips:
         places = [i for i, row in enumerate(rows) if row in first]
         independent, _ = independent_rows(gram, places)
         changed = [rows[i] for i in independent]
-        change = np.array([wanted[row] for row in changed]) - self.now()[changed]
+        change = np.array([wanted[row] for row in changed]) - self.now[changed]
         impulses = np.linalg.solve(self.to_rates[np.ix_(changed, changed)], change)
         velocities = self._velocities + self._to_velocities[:, changed] @ impulses
         for configuration in (CURRENT, exu.ConfigurationType.Initial):

@@ -1,7 +1,7 @@
 """Contacts that stick exactly in an assembled model: their modes, and when each mode ends."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar, cast
@@ -21,6 +21,9 @@ from reference_model.systems import FloatArray
 
 STILL = 1e-8
 """Largest slip in m/s or rad/s of a contact at rest whose slip joints and prescribed motions determine."""
+
+LEAST = 1e-200
+"""Least capacity in N m: shares of loads stay finite if friction vanishes."""
 
 AHEAD = 1e-3
 """Time in s that shows whether a prescribed motion moves a contact."""
@@ -77,6 +80,9 @@ class StickingContact:
     def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
         """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
         self.stick.mode = mode
+        if self.stick.entered == (mode, *locks):
+            return
+        self.stick.entered = mode, *locks
         for i, lock in enumerate(self.stick.locks):
             mbs.SetObjectParameter(lock, "activeConnector", i in locks)
         if (forces := self.stick.constant_forces) is not None:
@@ -120,29 +126,21 @@ class StickingContact:
     def capacities(self, t: float) -> tuple[float, float]:
         """Return the largest moments in N m against sliding forward and backward, > 0 of a one-way clutch too."""
         forward, backward = self.stick.limits(t)
-        least = FREE * max(forward, backward)
+        least = max(FREE * max(forward, backward), LEAST)
         return max(forward, least), max(backward, least)
 
     def opens_or_closes(self, holding: float) -> bool:
         """Return whether static friction has vanished, or acts on an open contact."""
         return (holding == 0.0) != (self.mode == Mode.OPEN)
 
-    def rows(self, mbs: Any) -> FloatArray:
-        """Return the gradients of the locked slips for all velocities of the model."""
-        return self.widened(mbs, self.stick.rows)
+    def rows_and_bias(self, state: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Return the gradients of the locked slips, shape (k, n), and their rates without accelerations, shape (k,).
 
-    def widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        """Return gradients for all velocities of the model from those for the contact's nodes."""
-        data = mbs.systemData
-        coordinates = data.GetODE2Coordinates(exu.ConfigurationType.Initial)[self.places]
-        gradients = gradients_at(self.stick.reference + coordinates)
-        rows = np.zeros((len(gradients), data.ODE2Size()))
-        rows[:, self.places] = gradients
-        return rows
-
-    def bias(self, mbs: Any) -> FloatArray:
-        """Return the rates of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
-        return self.stick.bias(self._state(mbs))
+        ``state`` contains the coordinates of the model, without reference values, and their derivatives.
+        """
+        q, q_t = state
+        own = q[self.places], q_t[self.places], np.zeros(len(self.places))
+        return self.stick.rows(self.stick.reference + own[0]), self.stick.bias(own)
 
     def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return coordinates without reference values, and their derivatives."""
@@ -153,20 +151,14 @@ class StickingContact:
             data.GetODE2Coordinates_tt(configuration)[places],
         )
 
-    def slip(self, mbs: Any, configuration: Any = CURRENT) -> float:
-        """Return S in rad/s."""
-        return self.stick.slip(*self._state(mbs, configuration)[:2])
-
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
         It is the slip in the direction of sliding (rad/s), 1 at rest, or ±1 without load or coefficient.
         """
-        stick, mode = self.stick, self.mode
-        limits = stick.limits(t)
-        if self.opens_or_closes(stick.without_rounding(max(limits))):
+        if self.opens_or_closes(self.holding(t)):
             return -1.0
-        return int(mode) * self.slip(mbs) if stick.slides else 1.0
+        return int(self.mode) * self.stick.slip(*self._state(mbs)[:2]) if self.stick.slides else 1.0
 
 
 class PlanarContact(StickingContact):
@@ -302,9 +294,11 @@ def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) ->
         return
     dynamics = Dynamics(mbs, times[0], 1.0)
     dynamics.evaluate(times[0])
+    start = mbs.systemData.GetODE2Coordinates(exu.ConfigurationType.Initial)
     joints, speeds = dynamics.gradients, dynamics.prescribed_speeds(times)
     for part in parts:
-        across = part.widened(mbs, part.planar.slip_map)[:2]
+        across = np.zeros((2, joints.shape[1]))
+        across[:, part.places] = part.planar.slip_map(part.stick.reference + start[part.places])[:2]
         across[np.abs(across) < NEGLIGIBLE] = 0.0
         part.planar.on_axis = part.planar.mean_radius > 0.0 and spanned(across, joints)
         if part.planar.on_axis and speeds.any():
@@ -319,7 +313,7 @@ def running(mbs: Any, contacts: Sequence[StickingContact]) -> Iterator[None]:
     """Let contacts stick and slide in a run, at first without friction."""
     try:
         for contact in contacts:
-            contact.stick.running, contact.stick.largest = True, 0.0
+            contact.stick.running, contact.stick.largest, contact.stick.entered = True, 0.0, ()
             contact.omit_user_functions(mbs)
             contact.enter(mbs, Mode.OPEN)
         yield

@@ -26,8 +26,8 @@ from reference_model.trajectory import SimulationError
 LOCATED = 1e-12
 """Resolution of the time of a change, as a share of a step."""
 
-SOON = 1e-6
-"""Share of a step within which a secant finds the time of a change without a further try."""
+SOON = 1e-5
+"""Largest difference between the roots of a line and a parabola, as a share of a step; the second is closer."""
 
 SMALL = 1e-3
 """Largest margin near a change, relative to those of the step; margins that jump are larger."""
@@ -202,8 +202,8 @@ class _Run:
                 self._accelerations = data.GetODE2Coordinates_tt()
                 return True
             now = self._modes.margins(t)
-            if min(now) < 0.0:
-                passed = t, (np.array(margins), np.array(now))
+            if now.min() < 0.0:
+                passed = t, (margins, now)
             if passed is not None or not self._slides.resolves(t - self._reached):
                 self._take_back()
                 return False
@@ -224,47 +224,32 @@ class _Run:
         data.SetTime(self._reached)
         self._sensors.switch(False)
 
-    def _try(self, t: float) -> FloatArray:
-        found = np.empty(0)
-
-        def look(time: float) -> bool:
-            nonlocal found
-            if time > self._reached:
-                found = np.array(self._modes.margins(time))
-                return False
-            return True
-
-        self._part(t, 1, look, write=False, keep=False)
-        return found
-
     def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
-        The secant through the two latest points finds it, or the Illinois method (Dowell & Jarratt, BIT 11 (1971)
-        168) within the interval.
+        Inverse interpolation through the latest points finds it, or the Illinois method within the interval (Dowell &
+        Jarratt, BIT 11 (1971) 168).
         """
         low, (above, below) = self._reached, margins
-        before: _Point = low, above
-        latest: _Point = high, below
-        soon = SOON * self._step
-        least, large = max(LOCATED * self._step, 4.0 * np.spacing(abs(high))), np.abs(below) + np.abs(above)
-        side = 0
+        points: list[_Point] = [(low, above), (high, below)]
+        least = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
+        side, large = 0, np.abs(below) + np.abs(above)
         for tried in range(MOST_CHANGES):
             ended = below < 0.0
-            secants = [(before, latest), ((low, np.maximum(above, 0.0)), (high, below))]
-            roots = next(
-                (root for root in (_roots(*pair, ended) for pair in secants) if low < root.min() < high),
-                np.where(ended, low, np.inf),
-            )
-            t = float(roots.min()) if tried % 4 < 3 else (low + high) / 2.0
+            within = [(low, np.maximum(above, 0.0)), (high, below)]
+            trials = [_roots(pair, ended) for pair in (points[-3:], points[-2:], within)]
+            roots = next((root for root in trials if low < root.min() < high), np.where(ended, low, np.inf))
+            found = float(roots.min())
+            t = found if tried % 4 < 3 else (low + high) / 2.0
             at_once = tried == 0 and t - low <= least
             t = min(max(t, low) + least / 2.0, high - least / 2.0)
-            first = int(roots.argmin())
-            is_root = abs(t - latest[0]) <= soon and abs(latest[1][first]) <= SMALL * large[first]
-            if is_root or at_once or high - low <= least:
+            is_close = max(abs(t - found), abs(t - trials[1].min())) <= SOON * self._step
+            is_small = (np.abs(points[-1][1]) <= SMALL * large)[roots.argmin()]
+            if (tried and is_close and is_small) or at_once or high - low <= least:
                 break
-            now = self._try(t)
-            before, latest = latest, (t, now)
+            self._step_to(t, keep=False)
+            now = self._modes.margins(t)
+            points.append((t, now))
             if (now < 0.0).any():
                 high, below, above, side = t, now, above if side <= 0 else above / 2.0, 1
             else:
@@ -272,7 +257,7 @@ class _Run:
         if not at_once:
             t = high if high - low <= least else t
             self._step_to(t)
-        now = np.array(self._modes.margins(self._reached))
+        now = self._modes.margins(self._reached)
         ends = (now < 0.0) | (roots - t <= least)
         self._modes.end([self._contacts[i] for i in np.flatnonzero(ends)])
 
@@ -301,8 +286,9 @@ class _Run:
                     contact.planar.frozen = False
         self._modes.end(contact for contact, _ in stopping)
 
-    def _step_to(self, t: float) -> None:
-        self._part(t, 1, lambda time: True, write=False, keep=True)
+    def _step_to(self, t: float, *, keep: bool = True) -> None:
+        start = self._reached
+        self._part(t, 1, lambda time: keep or time == start, write=False, keep=keep)
 
     def _note(self, before: Sequence[Mode]) -> None:
         """Record the changes of mode; raise ``SimulationError`` if they do not end."""
@@ -318,11 +304,14 @@ class _Run:
             )
 
 
-def _roots(first: _Point, second: _Point, ended: NDArray[Any]) -> NDArray[Any]:
-    """Return the times (s) where lines through two margins vanish, infinite unless the mode has ``ended``."""
-    (before, above), (after, below) = first, second
+def _roots(points: Sequence[_Point], ended: NDArray[Any]) -> NDArray[Any]:
+    """Return the times (s) where margins vanish, by inverse interpolation; infinite unless the mode has ``ended``."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(ended, after - below * (after - before) / (below - above), np.inf)
+        times = sum(
+            t * np.prod([other / (other - margins) for _, other in points if other is not margins], axis=0)
+            for t, margins in points
+        )
+    return np.where(ended, times, np.inf)
 
 
 class _SensorRows:

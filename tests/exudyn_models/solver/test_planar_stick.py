@@ -59,7 +59,7 @@ def sliding_ring(speed, spin, loads=(LOAD,), body=planar_body):
 def test_a_ring_stops_sliding_and_spinning_at_once_with_the_second_order(solver):
     exact = stop_of_ring(1.0, 5.0)
     errors = []
-    for step in (4e-3, 2e-3, 1e-3):
+    for step in (2e-3, 1e-3, 5e-4):  # the turn of friction shortens longer ones
         mbs, _, (contact,) = sliding_ring(1.0, 5.0)
         ((time, item, before, after),) = run(mbs, 0.3, step, solver)
         assert (item, before, after) == (int(contact.item), FORWARD, LOCKED)
@@ -101,7 +101,7 @@ def add_pin(mbs, master, place, load):
 
 
 ON_POINTS = [  # with slip, stick and release; a point rests alone for 0.3 s in the first and 1e-4 s in the second
-    (3, (2.92, 0.265, 1.2, 0.0606, 0.0389), [0.0599, 0.00397, 0.0, -0.0585, -0.156, -0.386], (8e-3, 4e-3)),
+    (3, (2.92, 0.265, 1.2, 0.0606, 0.0389), [0.0599, 0.00397, 0.0, -0.0585, -0.156, -0.386], (4e-3, 2e-3)),
     (6, (3.26, 0.515, 0.797, 0.139, 0.0452), [0.0969, -0.0235, 0.0, 0.265, -0.375, 1.69], (4e-3,)),
 ]
 

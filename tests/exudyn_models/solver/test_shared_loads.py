@@ -21,7 +21,8 @@ from free_bodies import (
 )
 
 from exudyn_models import add_ring_friction, solve_dynamic
-from exudyn_models.solver.stick.complementarity import Sets, SharedLoad, bounded_forces, rest_or_slip
+from exudyn_models.solver.stick.complementarity import Sets, bounded_forces, rest_or_slip
+from exudyn_models.solver.stick.resting import least_maximum
 from reference_model.trajectory import SimulationError
 
 SOLVERS = exu.DynamicSolverType
@@ -71,8 +72,15 @@ def test_a_shared_load_has_the_least_largest_share(loads):
     """Two contacts hold three others; a search over their forces finds nothing better."""
     rng = np.random.default_rng(1)
     by_chosen, limits = rng.normal(size=(3, 2)), np.repeat(rng.uniform(1.0, 3.0, (5, 1)), 2, axis=1)
-    forces, share = SharedLoad(by_chosen).distribution(np.array(loads), limits)
-    assert forces[:2] + by_chosen.T @ forces[2:] == pytest.approx(np.array(loads), abs=1e-12)
+    to_forces, start = np.vstack((-by_chosen.T, np.eye(3))), np.array([*loads, 0.0, 0.0, 0.0])
+    to_shares = np.vstack((to_forces, -to_forces)) / np.tile(limits[:, :1], (2, 1))
+
+    def shares(x):
+        forces = start + to_forces @ x
+        return np.concatenate((forces, -forces)) / np.tile(limits[:, 0], 2), to_shares
+
+    found = least_maximum(shares, np.zeros(3))
+    forces, share = start + to_forces @ found, shares(found)[0].max()
     for change in rng.normal(size=(2000, 3)):
         other = forces + 0.1 * np.concatenate((-by_chosen.T @ change, change))
         assert np.max(np.abs(other) / limits[:, 0]) > share - 1e-12

@@ -239,3 +239,17 @@ def test_changes_at_a_break_are_among_the_changes():
         (pytest.approx(0.2, abs=1e-9), item, 2, 1),
         (pytest.approx(0.2 + 2.0 * INERTIA / SLIDING, abs=1e-9), item, 1, 0),
     ]
+
+
+@pytest.mark.parametrize("pulse", [(0.038, 0.042), (0.033, 0.047), (0.035, 0.06)])
+def test_a_brake_at_rest_whose_load_vanishes_for_a_while_opens_and_closes_then(pulse):
+    """A moment of 5 N m accelerates the wheel; a brake of 10 N m then stops it in the same time."""
+    start, end = pulse
+    mbs = new_model()
+    wheel = rotor(mbs, 1.0, 0.0)
+    drive(mbs, wheel, lambda t: 5.0)
+    law = {"contact_radius": 1.0, "friction_coefficient": 1.0}
+    add_ring_friction(mbs, None, wheel, normal_load=lambda time: 0.0 if start <= time < end else 10.0, **law)
+    changes = run(mbs, 0.1, 0.01, SOLVERS.TrapezoidalIndex2)
+    assert [change[2:] for change in changes] == [(0, 2), (2, 1), (1, 0)]
+    assert [time for time, *_ in changes] == pytest.approx([start, end, 2.0 * end - start], abs=1e-9)

@@ -74,7 +74,8 @@ class Plane:
             else:
                 slip = self.slip(time, state)
                 gained = np.array(self.rates(time, state, False)[2:]) - acceleration
-                time -= STOPS**2 / (gained @ slip)
+                rest = -(STOPS**2) / (gained @ slip)
+                time, state[:2] = time + rest, state[:2] + rest * velocity
                 assert self.load(time, state) < self.hold  # otherwise it passes through rest
                 state[2:] = self.carried(time, state[:2])[0]
             rests = not rests
@@ -144,4 +145,4 @@ def check(seed, solver):
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_pins_and_rings_on_prescribed_planes_stop_and_slide_at_the_exact_times(solver):
-    assert sum(check(seed, solver) for seed in (0, 1, 4, 7, 20, 26, 97)) > 9
+    assert sum(check(seed, solver) for seed in (0, 1, 4, 7, 20, 26, 53, 80, 97)) > 12
