@@ -35,6 +35,11 @@ LAWS = {"box": 0.0, "pyramid": 0.25 * math.pi}
 OTHERS = ("rim", "even pressure")
 
 
+def laws_in(slides: Slides) -> FloatArray:
+    """Return the share of the turns by each law in the turns of ``slides``, and its standard error, shape (2, 2)."""
+    return np.array([share_of(slides["turn_deg"], box_turn(slides, turned)) for turned in LAWS.values()]).T
+
+
 def spins_left(spins: FloatArray, first: FloatArray) -> FloatArray:
     """Return the share of the first spin that is left at each speed and its standard error, shape (2, 5)."""
     return np.array([share_of(at_speed, first) for at_speed in spins.T]).T
@@ -44,13 +49,12 @@ def spins_left(spins: FloatArray, first: FloatArray) -> FloatArray:
     "The measured paths do not turn as friction within a box or a pyramid would turn them",
     resolution=0.05,
     basis="independent",
+    friction=False,
     note="Factor c of turn ≈ c·(turn by the law) for both laws in the axes of the records, which have any heading. "
     "Error: two standard errors, from the scatter of the slides.",
 )
 def straight() -> Measured:
-    slides = measured()
-    shares = [share_of(slides["turn_deg"], box_turn(slides, turned)) for turned in LAWS.values()]
-    found, errors = np.transpose(shares)
+    found, errors = laws_in(measured())
     return Measured(
         predicted=np.zeros(2), value=found, error=SIGMAS * errors, size=1.0, at={"law": list(LAWS)}
     )
@@ -60,6 +64,7 @@ def straight() -> Measured:
     "The measured deceleration does not depend on the heading of the cube",
     resolution=0.02,
     basis="independent",
+    friction=False,
     note="Amplitudes of the fourth harmonic of μ in the angle between path and cube, relative to the mean; a box in "
     "the axes of the cube has 0.18. Error: two standard errors, from the scatter of the slides.",
 )
@@ -77,6 +82,7 @@ def isotropic() -> Measured:
     "The measured spin falls with the speed as if four corners carried the load",
     resolution=0.1,
     basis="independent",
+    friction=False,
     note="Share of the first spin that is left, by least squares over all slides. Predicted from the inertia and the "
     "corners that bounces yield. The load was chosen among three, and both halves of the slides confirm it. Error: "
     "two standard errors of the scatter, and the effects of inertia and radius of the corners.",
@@ -118,6 +124,7 @@ def loads_on_the_face() -> dict[str, FloatArray]:
 @STUDY.claim(
     "The measured spin excludes an even pressure and a load along the rim",
     basis="independent",
+    friction=False,
     note="Is the predicted share of the spin more than three standard errors from the measured one? For each load on "
     "the flat face within the rounded edges, and on the whole side of the cube, at five speeds.",
 )
@@ -222,13 +229,11 @@ def slid(engine: Engine) -> Measurement:
 )
 def turns(engine: Engine) -> Measured:
     found, slides = slid(engine), measured()
-    shares = [share_of(slides["turn_deg"], box_turn(slides, turned)) for turned in LAWS.values()]
-    share, error = np.transpose(shares)
-    few = math.sqrt(len(slides["toss"]) / FEWER)
+    share, error = laws_in(slides) * [[1.0], [SIGMAS * math.sqrt(len(slides["toss"]) / FEWER)]]
     return Measured(
         predicted=share,
         value=found.value[:2],
-        error=SIGMAS * few * error + found.error[:2],
+        error=error + found.error[:2],
         size=1.0,
         at={"law": list(LAWS)},
     )
@@ -346,10 +351,12 @@ def validations() -> tuple[Validation, ...]:
             "turn of the path of a sliding cube",
         ),
         validation_of(
-            np.abs(slides["spins"][:, at] - level.spins[:, at]),
-            Uncertainties(slides["spin_error"], np.abs(wider.spins - level.spins)[:, at], none),
+            np.degrees(np.abs(slides["spins"] - level.spins)[:, at]),
+            Uncertainties(
+                *np.degrees([slides["spin_error"], np.abs(wider.spins - level.spins)[:, at], none])
+            ),
             "spin of a sliding cube at 0.2 m/s",
-            "rad/s",
+            "degrees/s",
         ),
         validation_of(
             np.abs(ratio), Uncertainties(noise, none, none), "change of the deceleration with speed", "%"
