@@ -20,7 +20,7 @@ from reference_model.trajectory import Trajectory
 
 SOURCE = "measurements of S. Pfrommer, M. Halm and M. Posa (2020), see slides.csv in the folder of this study"
 
-STUDY = Study.beside(__file__, "tosses", source=SOURCE, seconds=3.0, contact=True)
+STUDY = Study.beside(__file__, "tosses", source=SOURCE, seconds=4.0, contact=True)
 
 SIGMAS = 2.0
 """Standard errors of a mean that a claim allows, and those that exclude a load."""
@@ -187,7 +187,7 @@ def cube(slides: Slides, i: int, mu: float) -> tuple[DiscOnDisc, FloatArray, Flo
     return (
         disc,
         start,
-        speed / mu / theory.GRAVITY * np.append(np.linspace(0.0, 1.1, 60), np.linspace(1.2, 2.2, 20)),
+        speed / mu / theory.GRAVITY * np.append(np.linspace(0.0, 1.1, 40), np.linspace(1.2, 2.2, 11)),
     )
 
 

@@ -100,7 +100,7 @@ class Load(NamedTuple):
 
 
 def _loads() -> dict[str, Load]:
-    nodes, weights = np.polynomial.legendre.leggauss(6)
+    nodes, weights = np.polynomial.legendre.leggauss(4)
     sides = np.concatenate((nodes + 1j, nodes - 1j, 1.0 + 1j * nodes, -1.0 + 1j * nodes))
     return {
         "four corners": Load(np.array([1.0 + 1j, -1.0 + 1j, -1.0 - 1j, 1.0 - 1j]), np.full(4, 0.25)),
