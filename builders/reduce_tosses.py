@@ -13,7 +13,7 @@ fit, is the error of each number.
 import argparse
 import lzma
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
@@ -136,15 +136,16 @@ class Fit(NamedTuple):
         turn = np.degrees(at(SLOWEST, direction) - direction[0])
         return np.array([*decelerations, turn, at(0.20, spin) / spin[0], *spins])
 
-    def with_errors(self, of: Callable[[Array], Array], noise: Array) -> tuple[Array, Array]:
-        """Return ``of`` the coefficients and its standard errors for the ``noise`` of x, y and heading."""
-        value = of(self.coefficients)
+    def with_errors(self, noise: Array) -> tuple[Array, Array]:
+        """Return the numbers and their standard errors for the ``noise`` of x, y and heading."""
+        value = self.numbers(self.coefficients)
         steps = [
             np.outer(unit, size * vector)
             for unit, size in zip(np.eye(3), noise, strict=True)
             for vector in np.linalg.cholesky(self.covariance).T
         ]
-        return value, np.linalg.norm([of(self.coefficients + step) - value for step in steps], axis=0)
+        changes = [self.numbers(self.coefficients + step) - value for step in steps]
+        return value, np.linalg.norm(changes, axis=0)
 
 
 WITH_ERROR = ("mu", "mu_fast", "mu_slow", "turn", "spin_left")
@@ -188,15 +189,12 @@ def noise_at_rest(tosses: Sequence[Toss], scale: float) -> Array:
 
 def row_of(toss: Toss, found: Fit, noise: Array) -> Row:
     """Return the row of a slide."""
-    values, errors = found.with_errors(found.numbers, noise)
+    values, errors = found.with_errors(noise)
     speed, direction, _ = found.rates(found.coefficients)
     x, y = toss.turns[toss.flat, :2, 0 if toss.axis == 2 else 2]
     numbers: list[float | int | str] = [toss.number, found.frames, "-" * (toss.sign < 0) + "xyz"[toss.axis]]
-    numbers += [
-        np.degrees(direction[0]),
-        np.degrees(np.angle(np.exp(1j * (np.arctan2(y, x) - direction[0])))),
-    ]
-    numbers.append(speed[0])
+    axis = np.angle(complex(x, y) * np.exp(-1j * direction[0]))
+    numbers += [np.degrees(direction[0]), np.degrees(axis), speed[0]]
     for name, value, error in zip(WITH_ERROR, values, errors, strict=False):
         known = name != "spin_left" or abs(values[len(WITH_ERROR)]) >= LEAST_SPIN
         numbers += [value, error] if known else ["", ""]
@@ -216,8 +214,8 @@ def reduce(tosses: Sequence[Toss]) -> tuple[list[Row], list[str]]:
     noise = noise_at_rest(tosses, scale)
     rows = [row_of(*slide, noise) for slide in slides]
     hit = bounces(tosses, scale, c)
-    if not hit:
-        raise ValueError("no toss bounces on one corner, so the inertia is unknown")
+    if len(hit) < 3:
+        raise ValueError(f"{len(hit)} bounces on one corner are too few to find the inertia")
     radius, radius_error = corner_radius(hit)
     squares, errors = gyration(hit, c, radius)
     for other in ((c, radius + radius_error), (c + np.array(centre_error) / scale, radius)):
