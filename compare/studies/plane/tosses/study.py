@@ -1,7 +1,9 @@
 """Claims on the measured slides and on engines that repeat them, and the validation."""
 
 import math
+from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -89,24 +91,20 @@ def isotropic() -> Measured:
 )
 def spin() -> Measured:
     predicted, found, errors = [], [], []
+    radius = 1e-3 * measured().constants["corner_radius_mm"][1]
+    inertia, by = measured().constants["gyration_z_mm2"]
     for half in (0, 1):
         slides = measured().where(measured()["toss"] % 2 == half)
         share, error = spins_left(slides["spins"], slides["spin_first"])
-        radius = 1e-3 * slides.constants["corner_radius_mm"][1]
-        inertia, by = slides.constants["gyration_z_mm2"]
-        theories = [
+        shares, *others = (
             spins_left(theory.predicted(slides, CORNERS, reach).spins, slides["spin_first"])[0]
             for reach in (slides.reach, slides.reach - radius, slides.reach * math.sqrt(1.0 + by / inertia))
-        ]
-        predicted.append(theories[0])
+        )
+        predicted.append(shares)
         found.append(share)
-        errors.append(SIGMAS * (error + sum(np.abs(other - theories[0]) for other in theories[1:])))
-    return Measured(
-        predicted=predicted,
-        value=found,
-        error=errors,
-        at={"half": ["even tosses", "odd tosses"], "v in m/s": SPEEDS},
-    )
+        errors.append(SIGMAS * (error + sum(np.abs(other - shares) for other in others)))
+    at = {"half": ["even tosses", "odd tosses"], "v in m/s": SPEEDS}
+    return Measured(predicted=predicted, value=found, error=errors, at=at)
 
 
 @cache
@@ -184,11 +182,8 @@ def cube(slides: Slides, i: int, mu: float) -> tuple[DiscOnDisc, FloatArray, Flo
     start = state_of(0j, speed * np.exp(1j * slip), spin=slides["spin_first"][i])
     start[2] = slip + slides["axis"][i] + 0.25 * math.pi
     # Half of the friction brings the cube to the last speed within twice the time.
-    return (
-        disc,
-        start,
-        speed / mu / theory.GRAVITY * np.append(np.linspace(0.0, 1.1, 40), np.linspace(1.2, 2.2, 11)),
-    )
+    times = np.append(np.linspace(0.0, 1.1, 40), np.linspace(1.2, 2.2, 11))
+    return disc, start, speed / mu / theory.GRAVITY * times
 
 
 def seen(run: Trajectory) -> FloatArray:
@@ -228,15 +223,16 @@ def slid(engine: Engine) -> Measurement:
     "the measurement on as many slides.",
 )
 def turns(engine: Engine) -> Measured:
-    found, slides = slid(engine), measured()
-    share, error = laws_in(slides) * [[1.0], [SIGMAS * math.sqrt(len(slides["toss"]) / FEWER)]]
-    return Measured(
-        predicted=share,
-        value=found.value[:2],
-        error=error + found.error[:2],
-        size=1.0,
-        at={"law": list(LAWS)},
-    )
+    share, error = laws_in(measured()) * [[1.0], [SIGMAS * math.sqrt(len(measured()["toss"]) / FEWER)]]
+    return of_engine(engine, slice(0, 2), share, error, {"law": list(LAWS)})
+
+
+def of_engine(
+    engine: Engine, numbers: slice, predicted: FloatArray, error: FloatArray, at: dict[str, Any]
+) -> Measured:
+    """Compare ``numbers`` of the engine with measured ones and their ``error``."""
+    found, errors = (each[numbers] for each in slid(engine))
+    return Measured(predicted=predicted, value=found, error=error + errors, size=1.0, at=at)
 
 
 @STUDY.claim(
@@ -249,16 +245,11 @@ def turns(engine: Engine) -> Measured:
     "has no such change.",
 )
 def decelerates(engine: Engine) -> Measured:
-    found, slides = slid(engine), fastest()
+    slides, whole = fastest(), measured()
     rows = np.array([slides["mu"], slides["mu_slow"] / slides["mu_fast"]])
-    means, errors = rows.mean(axis=1), rows.std(axis=1) / math.sqrt(FEWER)
-    change = np.array([0.0, 1.0 - np.mean(measured()["mu_slow"] / measured()["mu_fast"])])
-    return Measured(
-        predicted=means,
-        value=found.value[2:4],
-        error=SIGMAS * errors + change + found.error[2:4],
-        at={"number": ["mean μ", "ratio of μ"]},
-    )
+    change = np.array([0.0, 1.0 - np.mean(whole["mu_slow"] / whole["mu_fast"])])
+    error = SIGMAS * rows.std(axis=1) / math.sqrt(FEWER) + change
+    return of_engine(engine, slice(2, 4), rows.mean(axis=1), error, {"number": ["mean μ", "ratio of μ"]})
 
 
 @STUDY.claim(
@@ -271,15 +262,9 @@ def decelerates(engine: Engine) -> Measured:
     "The load is even on the corners. Error: two standard errors of the measurement.",
 )
 def spins(engine: Engine) -> Measured:
-    found, slides = slid(engine), fastest()
-    share, error = spins_left(slides["spins"], slides["spin_first"])
-    return Measured(
-        predicted=share,
-        value=found.value[4:],
-        error=SIGMAS * error + found.error[4:],
-        at={"v in m/s": SPEEDS},
-        data={"spins left": found.value[4:]},
-    )
+    share, error = spins_left(fastest()["spins"], fastest()["spin_first"])
+    found = of_engine(engine, slice(4, None), share, SIGMAS * error, {"v in m/s": SPEEDS})
+    return replace(found, data={"spins left": found.value})
 
 
 SEGMENTS = 16

@@ -150,21 +150,18 @@ class Motion(NamedTuple):
     spins: FloatArray
 
 
-def predicted(
-    slides: Slides, load: Load, half_side: float, *, lift: float = 1.0, slope: float = 0.0
-) -> Motion:
+def predicted(slides: Slides, load: Load, half_side: float, slope: float = 0.0) -> Motion:
     """Return the motion of the slides under Coulomb's law from their first speeds and spins.
 
-    ``half_side`` is that of the square of contact in m, ``lift`` a factor of the height of the centre of mass, and
-    ``slope`` the slope (rad) of the board down to the left of the path.
+    ``half_side`` (m) is that of the square of contact, and ``slope`` (rad) that of the board down to the left.
     """
     mu = slides.of_constant("mean_mu")
+    shift = mu * slides["height"]
     places = half_side * load.places - slides["offset"][:, None]
     state = np.array([slides["speed_first"], slides["spin_first"], slides["axis"]], dtype=complex)
 
     def rates(state: ComplexArray) -> ComplexArray:
         turned = places * np.exp(1j * state[2].real)[:, None]
-        shift = mu * lift * slides["height"]
         force, moment = friction(turned, load.shares, state[0], state[1].real, shift)
         speed_up = GRAVITY * (mu * force + 1j * slope)
         return np.array([speed_up, mu * GRAVITY * moment / slides["gyration"], state[1]])
@@ -192,12 +189,6 @@ def seen_at(velocities: ComplexArray, spins: FloatArray) -> tuple[float, FloatAr
     at = -np.array([*SPEEDS, SLOWEST])
     found = [np.interp(at, -speeds[until], curve, right=np.nan) for curve in (spins[until], directions)]
     return float(found[1][-1] - directions[0]), found[0][:-1]
-
-
-def curl(slides: Slides) -> FloatArray:
-    """Return the turn (degrees) to first order in the spin: −μL·ω/v·ln(v/v₁) if ω ~ v."""
-    ratio = slides["spin_first"] / slides["speed_first"] * np.log(slides["speed_first"] / SLOWEST)
-    return np.asarray(-np.degrees(slides.of_constant("mean_mu") * slides["height"] * ratio))
 
 
 def box_turn(slides: Slides, turned: float = 0.0) -> FloatArray:
