@@ -29,6 +29,12 @@ SIGMAS = 2.0
 
 EXCLUDED = 3.0
 
+INERTIA = 0.06
+"""Relative systematic error of the inertia.
+
+Simulated bounces that last 3 to 6 ms yield an inertia that is 3 to 6 % too small.
+"""
+
 CORNERS = LOADS["four corners"]
 
 LAWS = {"box": 0.0, "pyramid": 0.25 * math.pi}
@@ -81,28 +87,26 @@ def isotropic() -> Measured:
 
 
 @STUDY.claim(
-    "The measured spin falls with the speed as if four corners carried the load",
-    resolution=0.1,
+    "With the inertia from bounces, the measured spin falls with the speed as if four corners carried the load",
+    resolution=0.15,
     basis="independent",
     friction=False,
     note="Share of the first spin that is left, by least squares over all slides. Predicted from the inertia and the "
-    "corners that bounces yield. The load was chosen among three, and both halves of the slides confirm it. Error: "
-    "two standard errors of the scatter, and the effects of inertia and radius of the corners.",
+    "corners that bounces yield; another inertia needs another load. The load was chosen among three; both halves "
+    "of the slides confirm it. Error: two standard errors of the scatter, and the effect of 6 % of the inertia.",
 )
 def spin() -> Measured:
     predicted, found, errors = [], [], []
-    radius = 1e-3 * measured().constants["corner_radius_mm"][1]
-    inertia, by = measured().constants["gyration_z_mm2"]
     for half in (0, 1):
         slides = measured().where(measured()["toss"] % 2 == half)
         share, error = spins_left(slides["spins"], slides["spin_first"])
-        shares, *others = (
+        shares, other = (
             spins_left(theory.predicted(slides, CORNERS, reach).spins, slides["spin_first"])[0]
-            for reach in (slides.reach, slides.reach - radius, slides.reach * math.sqrt(1.0 + by / inertia))
+            for reach in (slides.reach, slides.reach / math.sqrt(1.0 + INERTIA))
         )
         predicted.append(shares)
         found.append(share)
-        errors.append(SIGMAS * (error + sum(np.abs(other - shares) for other in others)))
+        errors.append(SIGMAS * error + np.abs(other - shares))
     at = {"half": ["even tosses", "odd tosses"], "v in m/s": SPEEDS}
     return Measured(predicted=predicted, value=found, error=errors, at=at)
 
@@ -120,16 +124,16 @@ def loads_on_the_face() -> dict[str, FloatArray]:
 
 
 @STUDY.claim(
-    "The measured spin excludes an even pressure and a load along the rim",
+    "With the inertia from bounces, the spin excludes an even pressure and a load along the rim of the flat face",
     basis="independent",
     friction=False,
-    note="Is the predicted share of the spin more than three standard errors from the measured one? For each load on "
-    "the flat face within the rounded edges, and on the whole side of the cube, at five speeds.",
+    note="Is the predicted share of the spin more than three standard errors from the measured one, even if the "
+    "inertia is 6 % smaller? For each load on the flat face within the rounded edges, at five speeds.",
 )
 def excluded() -> Measured:
     share, error = spins_left(measured()["spins"], measured()["spin_first"])
-    others = [left_by(load, half) for load in OTHERS for half in (measured().reach, theory.HALF_SIDE)]
-    margins = [np.abs(other - share) - EXCLUDED * error for other in others]
+    reach = measured().reach * math.sqrt(1.0 + INERTIA)
+    margins = [np.abs(left_by(load, reach) - share) - EXCLUDED * error for load in OTHERS]
     return answers_of(np.ravel(margins))
 
 

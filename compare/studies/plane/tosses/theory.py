@@ -207,7 +207,9 @@ def box_turn(slides: Slides, turned: float = 0.0) -> FloatArray:
 
 
 def share_of(values: FloatArray, unit: FloatArray) -> tuple[float, float]:
-    """Return the factor c of values ≈ c·unit by least squares, and its standard error from the scatter."""
+    """Return the factor c of values ≈ c·unit by least squares, and its standard error from the scatter.
+
+    The scatter may grow with ``unit``, as it does for spins.
+    """
     factor = float(values @ unit / (unit @ unit))
-    scatter = float(np.sum((values - factor * unit) ** 2) / (len(values) - 1))
-    return factor, float(np.sqrt(scatter / (unit @ unit)))
+    return factor, float(np.linalg.norm((values - factor * unit) * unit) / (unit @ unit))

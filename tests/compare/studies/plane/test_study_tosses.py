@@ -128,7 +128,7 @@ def test_a_tenth_of_a_box_or_a_pyramid_would_be_seen(monkeypatch, turned):
     assert theory_of(STUDY, "straight") == {"straight": DIFFERS}
 
 
-def test_friction_of_a_box_in_the_cube_and_other_loads_would_be_seen(monkeypatch):
+def test_friction_of_a_box_in_the_cube_other_loads_and_a_uniform_cube_would_be_seen(monkeypatch):
     slides = theory.measured()
     sides = np.maximum(np.abs(np.cos(slides["axis"])), np.abs(np.sin(slides["axis"])))
     with_columns(monkeypatch, mu=slides["mu"] / sides)
@@ -136,6 +136,8 @@ def test_friction_of_a_box_in_the_cube_and_other_loads_would_be_seen(monkeypatch
     for load in study.OTHERS:
         with_columns(monkeypatch, spins=theory.predicted(slides, theory.LOADS[load], slides.reach).spins)
         assert set(theory_of(STUDY, "spin", "excluded").values()) == {DIFFERS}
+    with_columns(monkeypatch, gyration=np.full(len(slides["gyration"]), 2.0 / 3.0 * theory.HALF_SIDE**2))
+    assert set(theory_of(STUDY, "spin", "excluded").values()) == {DIFFERS}
     study.left_by.cache_clear()
 
 
@@ -192,6 +194,25 @@ def test_the_text_contains_the_numbers_of_the_measurements():
     share, error = (row[2] for row in study.spins_left(slides["spins"], slides["spin_first"]))
     left = [shares[2] for shares in study.loads_on_the_face().values()]
     ratio = slides["mu_slow"] / slides["mu_fast"]
+    first, begin, end = slides["spin_first"], slides["spin_30"], slides["spin_12"]
+    last = (end @ first) / (begin @ first)
+    last_error = np.linalg.norm((end - last * begin) * first) / abs(begin @ first)
+    predicted_last = [shares[4] / shares[0] for shares in study.loads_on_the_face().values()]
+    uniform = replace(
+        slides, columns=slides.columns | {"gyration": slides["gyration"] * 0.0 + 2 / 3 * 0.0524**2}
+    )
+    later = replace(slides, columns=slides.columns | {"gyration": slides["gyration"] * 0.0 + 0.81e-3 / 0.37})
+    of_rim, of_corners = (theory.LOADS[load] for load in ("rim", "four corners"))
+    others = [
+        theory.share_of(theory.predicted(cube, load, half).spins[:, 2], first)[0]
+        for cube, load, half in (
+            (uniform, of_rim, theory.HALF_SIDE),
+            (uniform, of_rim, slides.reach),
+            (later, of_corners, slides.reach),
+            (later, of_rim, theory.HALF_SIDE),
+            (slides, of_rim, theory.HALF_SIDE),
+        )
+    ]
     box, pyramid = (
         theory.share_of(slides["turn_deg"], theory.box_turn(slides, by)) for by in study.LAWS.values()
     )
@@ -204,6 +225,12 @@ def test_the_text_contains_the_numbers_of_the_measurements():
         f"it is {100 - 100 * ratio.mean():.1f} ± {100 * ratio.std() / len(ratio) ** 0.5:.1f} % lower",
         f"{share:.3f} ± {error:.3f} of the spin",
         "flat face leave {:.3f}, a load along its rim {:.3f}, and an even pressure {:.3f}".format(*left),
+        f"a factor of {last:.3f} ± {last_error:.3f}. Corners predict "
+        "{:.3f}, the rim {:.3f} and an even pressure {:.3f}".format(*predicted_last),
+        "a share of {:.3f} ± {:.3f} would be left".format(*theory.share_of(end, begin)),
+        "rim: {:.3f} if the edges were sharp, {:.3f} on the flat face".format(*others[:2]),
+        "four corners leave {:.3f} and a rim with sharp edges {:.3f}".format(*others[2:4]),
+        f"leaves {others[4]:.3f}. That is {(others[4] - share) / error:.1f} standard errors",
         "slope of {:.1f} ± {:.1f} mrad".format(*slides.constants["slope_mrad"]),
     ):
         assert words in text
