@@ -198,21 +198,22 @@ def test_the_text_contains_the_numbers_of_the_measurements():
     last = (end @ first) / (begin @ first)
     last_error = np.linalg.norm((end - last * begin) * first) / abs(begin @ first)
     predicted_last = [shares[4] / shares[0] for shares in study.loads_on_the_face().values()]
-    uniform = replace(
-        slides, columns=slides.columns | {"gyration": slides["gyration"] * 0.0 + 2 / 3 * 0.0524**2}
-    )
-    later = replace(slides, columns=slides.columns | {"gyration": slides["gyration"] * 0.0 + 0.81e-3 / 0.37})
-    of_rim, of_corners = (theory.LOADS[load] for load in ("rim", "four corners"))
-    others = [
-        theory.share_of(theory.predicted(cube, load, half).spins[:, 2], first)[0]
-        for cube, load, half in (
-            (uniform, of_rim, theory.HALF_SIDE),
-            (uniform, of_rim, slides.reach),
-            (later, of_corners, slides.reach),
-            (later, of_rim, theory.HALF_SIDE),
-            (slides, of_rim, theory.HALF_SIDE),
-        )
-    ]
+    whole, square = theory.HALF_SIDE, 2.0 / 3.0 * theory.HALF_SIDE**2
+    others = []
+    for load, half, gyration in (
+        ("rim", whole, square),
+        ("rim", slides.reach, square),
+        ("four corners", slides.reach, 0.81e-3 / 0.37),
+        ("rim", whole, 0.81e-3 / 0.37),
+        ("rim", whole, slides["gyration"]),
+    ):
+        cube = replace(slides, columns=slides.columns | {"gyration": gyration + 0.0 * first})
+        others.append(theory.share_of(theory.predicted(cube, theory.LOADS[load], half).spins[:, 2], first)[0])
+    speeds = np.column_stack((slides["speed_first"], np.tile(theory.SPEEDS, (len(first), 1))))
+    squares = (slides.reach * np.column_stack((first, slides["spins"])) / speeds) ** 2
+    squares = np.trapezoid(squares, speeds) / (theory.SLOWEST - speeds[:, 0])
+    slower = -2.0 * (slides["mu"] / np.mean(slides["mu"]) - 1.0)
+    by_spin = theory.share_of(slower - slower.mean(), squares - squares.mean())
     box, pyramid = (
         theory.share_of(slides["turn_deg"], theory.box_turn(slides, by)) for by in study.LAWS.values()
     )
@@ -231,6 +232,7 @@ def test_the_text_contains_the_numbers_of_the_measurements():
         "rim: {:.3f} if the edges were sharp, {:.3f} on the flat face".format(*others[:2]),
         "four corners leave {:.3f} and a rim with sharp edges {:.3f}".format(*others[2:4]),
         f"leaves {others[4]:.3f}. That is {(others[4] - share) / error:.1f} standard errors",
+        "half of {:.1f} ± {:.1f} times the mean".format(*by_spin),
         "slope of {:.1f} ± {:.1f} mrad".format(*slides.constants["slope_mrad"]),
     ):
         assert words in text
