@@ -183,7 +183,7 @@ def test_the_turn_of_a_box_is_that_of_two_independent_components():
 
 def test_the_validations_state_how_little_the_cameras_explain():
     found = study.validations()
-    assert [one.count for one in found] == [284] * 3
+    assert [one.count for one in found] == [284] * 2
     for one in found:
         assert 0.0 < one.explained < EXPECTED  # a study that validates the law would need another text
         assert 0.0 < one.data < one.error
