@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import dblquad
+from scipy.integrate import dblquad, trapezoid
 from studies_under_test import AGREES, DIFFERS, theory_of, verdicts
 
 from compare.claims.validation import EXPECTED
@@ -211,7 +211,7 @@ def test_the_text_contains_the_numbers_of_the_measurements():
         others.append(theory.share_of(theory.predicted(cube, theory.LOADS[load], half).spins[:, 2], first)[0])
     speeds = np.column_stack((slides["speed_first"], np.tile(theory.SPEEDS, (len(first), 1))))
     squares = (slides.reach * np.column_stack((first, slides["spins"])) / speeds) ** 2
-    squares = np.trapezoid(squares, speeds) / (theory.SLOWEST - speeds[:, 0])
+    squares = trapezoid(squares, speeds) / (theory.SLOWEST - speeds[:, 0])
     slower = -2.0 * (slides["mu"] / np.mean(slides["mu"]) - 1.0)
     by_spin = theory.share_of(slower - slower.mean(), squares - squares.mean())
     box, pyramid = (
