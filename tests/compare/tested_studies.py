@@ -188,6 +188,13 @@ PUSHES = Tested(
     small={"the hand's friction 2 % too small": Patched(wrong.hand_with_friction(0.49))},
 )
 
+TOSSES = Tested(
+    STUDY["tosses"],
+    gross=GROSS
+    | {"a load that does not move": Patched(wrong.cube_with_load_moved(0.0), "reference", "reference")},
+    small={"a load that moves 1 % less": Patched(wrong.cube_with_load_moved(0.99), "reference", "reference")},
+)
+
 # ---------------------------------------------------------------- the drivetrain
 
 UNBALANCED = "the energy balance is off by"

@@ -23,6 +23,7 @@ from compare.studies.drivetrain.frozen import whirls
 from compare.studies.drivetrain.run_up import study as run_up
 from compare.studies.plane import thrown_disc as thrown_disc
 from compare.studies.plane.pushes import forward as pushed_forward
+from compare.studies.plane.tosses import study as tosses
 from compare.studies.toolkit.drivetrain_bench import (
     RPM,
     Operation,
@@ -37,6 +38,7 @@ from exudyn_models.solver.stick import resting
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring
+from reference_model.contact.points import Points
 
 items: Any = exudyn.itemInterface
 
@@ -339,6 +341,15 @@ def full_disc_as_a_ring(patch):
 def full_disc_with_a_small_hole(patch):
     """Give a full disc a hole of 2 % of its radius."""
     patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
+
+
+def cube_with_load_moved(factor):
+    """Move the load of the reference's cube on four corners by a wrong distance."""
+
+    def points(places):
+        return Points([(x, y, 0.25 + factor * (share - 0.25)) for x, y, share in places])
+
+    return lambda patch: patch.setattr(tosses, "Points", points)
 
 
 def hand_with_friction(coefficient):

@@ -304,7 +304,7 @@ def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     unit="μN/C, k·μN/C",
     resolution=1e-3,
     note="The block starts at 8.5·μN/C at 45 degrees, turns back at 6.5, 4.5 and 2.5, and rests at 0.5·μN/C. Sampled "
-    "every quarter of a swing.",
+    "every quarter of a swing. This is code_aster's test SDND100.",
 )
 def swings(engine: Engine) -> Measured:
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
@@ -320,6 +320,7 @@ def swings(engine: Engine) -> Measured:
         at={"half swing": 0.5 * quarters[1:]},
         components=[name.replace("in m/s", "in k·μN/C").replace("in m", "in μN/C") for name in IN_SPACE],
         system=SWINGING,
+        source="code_aster, V5.01.100, SDND100",
         data={"half swings": 0.5 * quarters[1:], "way": found.value[0, :, 0] / length},
     )
 

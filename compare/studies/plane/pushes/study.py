@@ -12,6 +12,7 @@ from compare.claims.prose import Table
 from compare.claims.validation import Validation
 from compare.engines import Engine
 from compare.studies.plane.pushes.reduction import Push
+from compare.studies.toolkit.uncertainties import Uncertainties, median_with_error, validation_of
 from reference_model.contact.limit_surface import largest_wrench
 from reference_model.systems import FloatArray
 
@@ -158,46 +159,23 @@ def validations(every: int = EVERY) -> tuple[Validation, ...]:
 def _of(series: Sequence[str], of: theory.Difference, quantity: str, unit: str = "degrees") -> Validation:
     groups = [theory.by_series()[one] for one in series]
     found = np.array([np.linalg.norm(of(push, theory.coulomb)) for pushes in groups for push in pushes])
-    uncertain = theory.Uncertainties.joined([theory.uncertainties(pushes, of) for pushes in groups])
-    return _validation(found, uncertain, quantity, unit)
+    uncertain = Uncertainties.joined([theory.uncertainties(pushes, of) for pushes in groups])
+    return validation_of(found, uncertain, quantity, unit)
 
 
 def _of_final_positions(every: int) -> Validation:
     predicted = quasi_static(every=every)
     slippery, rough = (quasi_static(hand=forward.HAND + change, every=every) for change in (-0.1, 0.1))
     poses = [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
-    return _validation(
+    return validation_of(
         from_measured(predicted, every),
-        theory.Uncertainties(
+        Uncertainties(
             data=np.array(poses),
             input=0.5 * apart(rough, slippery),
             numerical=apart(predicted, quasi_static(10, every=every)),
         ),
         "final position of the pushed body",
         "mm",
-    )
-
-
-def _validation(sizes: FloatArray, uncertain: theory.Uncertainties, quantity: str, unit: str) -> Validation:
-    median, scatter = theory.median_with_error(sizes)
-
-    def middle(values: FloatArray) -> float:
-        found = float(np.median(values))
-        return found if found > ROUNDING else 0.0
-
-    explained, (factor, model) = uncertain.share_explained(sizes), uncertain.missing(sizes)
-    return Validation(
-        quantity=quantity,
-        unit=unit,
-        error=median,
-        error_uncertainty=scatter,
-        data=middle(uncertain.data),
-        input=middle(uncertain.input),
-        numerical=middle(uncertain.numerical),
-        explained=explained,
-        factor=factor,
-        model=model,
-        count=len(sizes),
     )
 
 
@@ -262,7 +240,7 @@ def _of_hypotheses() -> Table:
 
 
 def _text(values: FloatArray, digits: int = 1) -> str:
-    median, error = theory.median_with_error(values)
+    median, error = median_with_error(values)
     return f"{median:.{digits}f} ± {error:.{digits}f}"
 
 

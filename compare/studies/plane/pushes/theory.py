@@ -7,15 +7,15 @@ against d. All parameters are the authors' values; nothing is fitted.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations, groupby
 
 import numpy as np
 from numpy.typing import NDArray
 
-from compare.claims.validation import EXPECTED
 from compare.studies.plane.pushes.reduction import Push, reduced_pushes
+from compare.studies.toolkit.uncertainties import Uncertainties
 from reference_model.contact.limit_surface import wrench_of_slip
 from reference_model.contact.patch import polygon_patch
 from reference_model.contact.points import Points
@@ -164,35 +164,6 @@ NORMAL = 1.4826
 """Ratio of standard deviation to median deviation of a normal distribution."""
 
 
-@dataclass(frozen=True)
-class Uncertainties:
-    """Standard uncertainties of one difference, shape (n,) each."""
-
-    data: FloatArray
-    input: FloatArray
-    numerical: FloatArray
-
-    @classmethod
-    def joined(cls, several: Sequence[Uncertainties]) -> Uncertainties:
-        """Return the uncertainties of several differences."""
-        return cls(*(np.concatenate(kind) for kind in zip(*map(astuple, several), strict=True)))
-
-    def share_explained(self, errors: FloatArray) -> float:
-        """Return the share of ``errors`` (n,) that are at most twice their total uncertainty."""
-        return float(np.mean(errors <= 2.0 * self.total))
-
-    @property
-    def total(self) -> FloatArray:
-        """Total standard uncertainty of each difference."""
-        return np.asarray(np.sqrt(self.data**2 + self.input**2 + self.numerical**2))
-
-    def missing(self, errors: FloatArray) -> tuple[float, float]:
-        """Return the factor on the total, and the additional uncertainty, that explain the expected share."""
-        factor = np.quantile(0.5 * errors / self.total, EXPECTED, method="inverted_cdf")
-        squared = np.quantile((0.5 * errors) ** 2 - self.total**2, EXPECTED, method="inverted_cdf")
-        return float(factor), float(np.sqrt(max(squared, 0.0)))
-
-
 def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
     """Return the standard uncertainties of a displacement (mm) and a turn (rad).
 
@@ -295,9 +266,3 @@ def by_series() -> dict[str, tuple[Push, ...]]:
 def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = coulomb) -> FloatArray:
     """Return the absolute values of the error function ``of`` under a law, shape (n,)."""
     return np.abs([of(push, law) for push in pushes])
-
-
-def median_with_error(values: FloatArray, draws: int = 2000) -> tuple[float, float]:
-    generator = np.random.default_rng(1)
-    medians = np.median(generator.choice(values, (draws, len(values))), axis=1)
-    return float(np.median(values)), float(medians.std())
