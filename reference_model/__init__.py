@@ -91,10 +91,10 @@ __all__ = [
 
 _HOMES = (
     "systems", "trajectory", "contact.points", "contact.contact_law", "contact.annulus", "simulation", "formulas.pin",
-    "formulas.power_balance", "motion.pushing", "steady.stability", "steady.steady_states", "orbits",
-    "orbits.release_map", "orbits.basin_boundary", "orbits.shock",
+    "formulas.power_balance", "motion.pushing", "steady.stability", "steady.steady_states", "orbits.whirl",
+    "orbits.shooting", "orbits.release_map", "orbits.basin_boundary", "orbits.shock",
 )  # fmt: skip
-"""The modules of these names; each is searched after those that it imports."""
+"""The modules of these names; each is searched after those that it imports. Packages would find modules too."""
 
 
 def __getattr__(name: str) -> Any:

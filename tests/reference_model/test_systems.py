@@ -1,6 +1,8 @@
 """Error messages for invalid systems, states, times and tolerances: one line with the parameter and its value."""
 
 import datetime
+import importlib
+import inspect
 import math
 from dataclasses import FrozenInstanceError, replace
 from decimal import Decimal
@@ -9,6 +11,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import reference_model
 from compare.claims.parameters import FIG5, FIG11
 from reference_model import (
     PinOnDisc,
@@ -210,3 +213,11 @@ def test_arguments_are_not_changed():
     simulate(FIG5, state, times)
     state[0], times[0] = 0.2, -1.0  # still writable and independent of the result
     assert simulate(FIG5, state, times).states[0] == pytest.approx(state, abs=0.0)
+
+
+def test_public_names_are_not_modules_even_if_a_module_has_the_same_name():
+    importlib.import_module("reference_model.orbits.basin_boundary")
+    for name in reference_model.__all__:
+        assert not inspect.ismodule(getattr(reference_model, name)), name
+    with pytest.raises(AttributeError, match="module 'reference_model' has no attribute 'nothing'"):
+        reference_model.nothing  # noqa: B018
