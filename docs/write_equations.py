@@ -121,7 +121,7 @@ PRINTED = {
 MOST_FUNCTIONS, MOST_CLAIMS = 3, 4
 """Largest numbers of functions and of claims in a row; the search of the report finds all claims of an equation."""
 
-PREFERRED = ("plain", "formulas", "contact", "systems", "steady", "motion", "orbits")
+PREFERRED = ("plain", "formulas", "contact", "systems", "steady", "orbits")
 """Modules of the reference, the most useful first."""
 
 CITED = re.compile(r"\((\d+)\)(?:(?: to |–)\((\d+)\))?|\b[Ee]qs?\. (\d+(?:(?:, | and | to |–)\d+)*)")

@@ -3,14 +3,13 @@
 - ``plain``: the paper's equations as printed, integrated by SciPy; read it first;
 - ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
 - ``simulation``: :func:`simulate`;
-- ``contact``: friction laws and their limit surfaces;
+- ``contact``: friction laws, their limit surfaces, and the quasi-static motion of a pushed body;
 - ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;
-- ``motion``: the event-driven simulation of slip and stick, and the quasi-static motion of a pushed body;
 - ``steady``: steady motions, their stability, and its boundaries;
 - ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
 - ``core``: one trajectory by the same functions, interpreted or compiled;
 - ``ensemble``: compiled simulation of many trajectories;
-- ``numerics``: roots, continuation, collocation, and curves where a function changes sign.
+- ``numerics``: roots, continuation, curves where a function changes sign, and compiled code on disk.
 
 The public names are imported when they are used, so that the parameters alone can be used without SciPy.
 """
@@ -23,9 +22,9 @@ if TYPE_CHECKING:
     from reference_model.contact.annulus import Annulus
     from reference_model.contact.contact_law import Ring, ThreeTermRing
     from reference_model.contact.points import Points, PointsOnRing
+    from reference_model.contact.pushing import Pushing
     from reference_model.formulas.pin import sticking_radius
     from reference_model.formulas.power_balance import PowerBalance, power_balance
-    from reference_model.motion.pushing import Pushing
     from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
     from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
     from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
@@ -91,7 +90,7 @@ __all__ = [
 
 _HOMES = (
     "systems", "trajectory", "contact.points", "contact.contact_law", "contact.annulus", "simulation", "formulas.pin",
-    "formulas.power_balance", "motion.pushing", "steady.stability", "steady.steady_states", "orbits.whirl",
+    "formulas.power_balance", "contact.pushing", "steady.stability", "steady.steady_states", "orbits.whirl",
     "orbits.shooting", "orbits.release_map", "orbits.basin_boundary", "orbits.shock",
 )  # fmt: skip
 """The modules of these names; each is searched after those that it imports. Packages would find modules too."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -294,7 +294,7 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
             f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report.",
             INTERRUPTED,
         )
-    if matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result):
+    if matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(_evidence(result)):
         return SOMETHING_DIFFERS
     if short := "; ".join(
         f"{name}: {share.in_words('claim')}"
@@ -328,7 +328,7 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
                 lines.append(f"{line}: {row.sentence}")
     for line in dict.fromkeys(lines):  # one reason may apply to all claims of a study
         print(line)
-    for what, failure in _failures(result).items():
+    for what, failure in _failures(_figures(result) | _evidence(result)).items():
         print(f"{what}: {failure}")
     for name in () if result.interrupted else result.engines:
         print(f"{name}: {result.share(name).in_words('claim')}")
@@ -340,17 +340,22 @@ def _listed(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_LISTED]) + more
 
 
-def _failures(result: Run) -> dict[str, Failure]:
+def _failures(work: Mapping[str, object]) -> dict[str, Failure]:
     from compare.run.workers import Failure
 
-    work: dict[str, object] = {
-        f"{name}: the figures could not be drawn": drawing for name, drawing in result.drawings.items()
-    }
-    work |= {
+    return {name: value for name, value in work.items() if isinstance(value, Failure)}
+
+
+def _figures(result: Run) -> dict[str, object]:
+    """Return the drawings; one that fails costs no verdict."""
+    return {f"{name}: the figures could not be drawn": drawing for name, drawing in result.drawings.items()}
+
+
+def _evidence(result: Run) -> dict[str, object]:
+    return {
         f"errata: no evidence for {result.errata[i].equation}": evidence
         for i, evidence in result.evidence.items()
     }
-    return {name: value for name, value in work.items() if isinstance(value, Failure)}
 
 
 # --- A single claim of a study

@@ -4,9 +4,9 @@ The functions are plain Python on numbers and tuples. numba compiles them when a
 
 - ``forces``: support, damper, friction and the equations of motion;
 - ``rest``, ``limit``: friction at rest, release, and the beginning of slip;
-- ``explicit``, ``collocation``: steps of both methods, used by ``slip`` and ``stiff``;
+- ``steps``: a step of either method, used by ``slip`` and ``stiff``;
 - ``surfaces``: the kinks of the forces, and the end of a pivot;
 - ``recording``: the motion at the requested times;
 - ``run``, ``memory``: the sequence of phases, in calls of bounded length;
-- ``single``: one trajectory.
+- ``single``, ``units``: one trajectory in SI units.
 """

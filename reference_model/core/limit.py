@@ -10,12 +10,12 @@ import math
 
 import numpy as np
 
-from reference_model.core.collocation import solve_linear
 from reference_model.core.forces.law import CENTRE, WIDTH, Law, seen_from
 from reference_model.core.forces.pivot import turning
 from reference_model.core.forces.points import turning_of_friction
 from reference_model.core.forces.rates import growth, pull
-from reference_model.core.parts import part
+from reference_model.core.steps.collocation import solve_linear
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 MOST_ITERATIONS = 200

@@ -2,10 +2,10 @@
 
 import math
 
-from reference_model.core.explicit import Unknowns
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.points import centre_slip, slip_of
-from reference_model.core.parts import inlined, part
+from reference_model.core.steps.explicit import Unknowns
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 SLIPS, STICKS, PIVOTS = 1.0, 2.0, 3.0

@@ -2,12 +2,12 @@
 
 import math
 
-from reference_model.core.collocation import at
-from reference_model.core.explicit import SIZE, Unknowns, component, inside, take
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.rates import rates
 from reference_model.core.memory import EVALUATIONS, RECORDED, carried, pending, put
-from reference_model.core.parts import part
+from reference_model.core.steps.collocation import at
+from reference_model.core.steps.explicit import SIZE, Unknowns, component, inside, take
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 AS_GOOD = 1.0

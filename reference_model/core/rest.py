@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from reference_model.core.collocation import solve_linear
-from reference_model.core.explicit import Unknowns
 from reference_model.core.forces.contact import resisted
 from reference_model.core.forces.law import CENTRE, Law, seen_from
 from reference_model.core.forces.points import centre_slip
 from reference_model.core.forces.rates import growth, pull, tangent
 from reference_model.core.limit import LEAST_SLIP, direction_of_points, spare_of_points
 from reference_model.core.memory import speed_of
-from reference_model.core.parts import part
+from reference_model.core.steps.collocation import solve_linear
+from reference_model.core.steps.explicit import Unknowns
+from reference_model.numerics.parts import part
 
 GRAZING = 1e-8
 """Relative excess of the pull above friction that does not count as a release: it moves the body by about g·δ²/ω²."""

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from reference_model.core.explicit import EXTENDED, SIZE, TERMS, Unknowns
 from reference_model.core.forces.law import CENTRE, Law, seen_from, unpacked
 from reference_model.core.forces.pivot import first_slip, turning
 from reference_model.core.forces.points import centre_slip
@@ -34,12 +33,13 @@ from reference_model.core.memory import (
     seen,
     speed_of,
 )
-from reference_model.core.parts import part
 from reference_model.core.recording import record_carried, record_falling
 from reference_model.core.rest import direction, holds_for
 from reference_model.core.slip import creep_from, ends_together, point_for, slide, time_left
+from reference_model.core.steps.explicit import EXTENDED, SIZE, TERMS, Unknowns
 from reference_model.core.stiff import FIRST_STEP, at_rest, begin_slip, slip_stiffly
 from reference_model.core.surfaces import grip, sides
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 AT_REST = 1e-15

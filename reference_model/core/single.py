@@ -29,10 +29,10 @@ from reference_model.core.memory import (
     STEP,
     STEPS,
 )
-from reference_model.core.parts import digest_with_parts, register_parts
 from reference_model.core.run import advance
 from reference_model.core.units import Frame, Units
 from reference_model.numerics.cache_folders import has_files
+from reference_model.numerics.parts import digest_with_parts, register_parts
 from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Kind, SimulationError, Solution, StepCount, Trajectory, phases_of

@@ -2,7 +2,6 @@
 
 import math
 
-from reference_model.core.explicit import Unknowns, component, error_of, factor_of, interpolate, take
 from reference_model.core.forces.law import CENTRE, Law, seen_from
 from reference_model.core.forces.points import centre_slip, point_to_follow
 from reference_model.core.forces.rates import rates
@@ -24,10 +23,11 @@ from reference_model.core.memory import (
     seen,
     speed_of,
 )
-from reference_model.core.parts import inlined, part
 from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
 from reference_model.core.rest import NOISE, creep_of
+from reference_model.core.steps.explicit import Unknowns, component, error_of, factor_of, interpolate, take
 from reference_model.core.surfaces import crossing, grip, may_cross
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 REST_TIME = 1e-12

@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 
-from reference_model.core.collocation import NODES, POINTS, at, error_of, series, solve
-from reference_model.core.explicit import Unknowns
 from reference_model.core.forces.law import CENTRE, Law, seen_from
 from reference_model.core.forces.points import centre_slip
 from reference_model.core.forces.rates import growth
@@ -26,11 +24,13 @@ from reference_model.core.memory import (
     put,
     speed_of,
 )
-from reference_model.core.parts import part
 from reference_model.core.recording import record_series
 from reference_model.core.rest import begun, drift
 from reference_model.core.slip import creep_from, point_for
+from reference_model.core.steps.collocation import NODES, POINTS, at, error_of, series, solve
+from reference_model.core.steps.explicit import Unknowns
 from reference_model.core.surfaces import crossed_any
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12

@@ -2,13 +2,13 @@
 
 import math
 
-from reference_model.core.explicit import Unknowns, inside
 from reference_model.core.forces.law import Law
 from reference_model.core.forces.pivot import turning
 from reference_model.core.forces.points import centre_slip
 from reference_model.core.forces.rates import pull, rates
 from reference_model.core.memory import SIDE_OF_GRIP, SIDE_OF_HOLE, SIDE_OF_RIM, SIDE_OF_SPIN, SIDE_OF_STOP
-from reference_model.core.parts import inlined, part
+from reference_model.core.steps.explicit import Unknowns, inside
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 PLACES = 16

@@ -18,9 +18,9 @@ from reference_model.contact.contact_law import Ring
 from reference_model.formulas import disc as disc_formulas
 from reference_model.formulas import pin as pin_formulas
 from reference_model.formulas.characteristic_polynomial import characteristic_coefficients
+from reference_model.formulas.pin.polar_form import simulate_polar_form
 from reference_model.formulas.pin.whirl import speed_ratio
 from reference_model.formulas.torque_balance import least_load_with_whirl
-from reference_model.motion.polar_form import simulate_polar_form
 from reference_model.steady.bifurcation_curves import ParameterPlane
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude
 from reference_model.support import Support

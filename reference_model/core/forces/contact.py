@@ -12,7 +12,7 @@ The integral of r·∂P over a disc contains the same integrals, so force and mo
 import math
 
 from reference_model.core.forces.law import OWN, Law
-from reference_model.core.parts import part, replaced_by
+from reference_model.numerics.parts import part, replaced_by
 
 AGREED = 1e-8
 """Relative difference of two means whose next means agree to rounding."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from reference_model.core.parts import part
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 CENTRE = -1

@@ -9,7 +9,7 @@ degree of freedom is not stiff.
 import math
 
 from reference_model.core.forces.law import WIDTH, Law
-from reference_model.core.parts import part
+from reference_model.numerics.parts import part
 
 
 @part

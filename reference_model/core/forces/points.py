@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from reference_model.core.forces.law import CENTRE, WIDTH, Law
-from reference_model.core.parts import inlined, part
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 CLOSE = 0.1

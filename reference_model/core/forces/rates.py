@@ -10,7 +10,7 @@ from reference_model.core.forces.contact import resisted
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.pivot import turning
 from reference_model.core.forces.points import centre_slip, friction_of_points, of_point
-from reference_model.core.parts import inlined, part
+from reference_model.numerics.parts import inlined, part
 
 
 @part

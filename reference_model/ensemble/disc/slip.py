@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from reference_model.core.collocation import NODES
+from reference_model.core.steps.collocation import NODES
 from reference_model.core.stiff import FIRST_SPAN, LEAST_SPAN, RISING
 from reference_model.ensemble.core.contact_shares import LEAST, ring_shares
 from reference_model.ensemble.core.jit import inlined, scalar

@@ -98,7 +98,7 @@ REPORTS = [
         f"partly good not simulated: {LACKS}\n{SHARE.format(1, 1, 100)}1 {MEASURED} agrees, 0 differ, "
         "0 inconclusive, 1 not simulated (",
     ),
-    ("undrawable", 1, "undrawable: the figures could not be drawn: KeyError: 'radius'"),
+    ("undrawable", 0, "undrawable: the figures could not be drawn: KeyError: 'radius'"),
     ("asking --engine hostile:refusing", 3, NOTHING.format("hostile:refusing")),
     ("asking --engine good --engine hostile:refusing", 3, NOTHING.format("hostile:refusing")),
     ("of-another --engine good", 3, NOTHING.format("good")),

@@ -10,12 +10,12 @@ from random_systems import TIMES, RandomMotion, random_points, smooth_motion
 from reference_model import DiscOnDisc, Points, simulate
 from reference_model.contact.contact_law import contact_of
 from reference_model.contact.limit_surface import PointsLimit
-from reference_model.core.collocation import jacobian_at, rates_at
 from reference_model.core.forces.law import seen_from
 from reference_model.core.forces.rates import growth
 from reference_model.core.limit import LEAST_SLIP, direction_of_points, pivot_from_rest, spare_of_points
 from reference_model.core.memory import seen
 from reference_model.core.single import law_of
+from reference_model.core.steps.collocation import jacobian_at, rates_at
 from reference_model.core.units import Units
 
 SEEDS = (*range(2, 50, 6), 188, 302)

@@ -13,7 +13,7 @@ from compare.claims import WORKING
 from compare.claims.parameters import FIG5
 from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE
 from reference_model import Phase, PinOnDisc, Trajectory
-from reference_model.motion.polar_form import simulate_polar_form
+from reference_model.formulas.pin.polar_form import simulate_polar_form
 from reference_model.systems import FloatArray
 
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))

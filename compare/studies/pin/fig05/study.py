@@ -16,7 +16,7 @@ from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.measuring import compared
 from reference_model import Orbit, Trajectory, plain, simulate, whirl_orbit
 from reference_model.formulas.pin import equilibrium_position, release_time, squared_holding_force
-from reference_model.motion.polar_form import simulate_polar_form
+from reference_model.formulas.pin.polar_form import simulate_polar_form
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from compare.studies.plane.pushes.reduction import Push
 from compare.studies.plane.pushes.theory import CENTRE, LEGS, MASS, MM, SLIDING_FORCES, contact_of, surface
-from reference_model.motion.pushing import Pushing
+from reference_model.contact.pushing import Pushing
 
 HAND = 0.5
 """Friction coefficient of the hand on the edge, which the authors do not state.

@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from reference_model.core import collocation
-from reference_model.core.collocation import NODES
+from reference_model.core.steps import collocation
+from reference_model.core.steps.collocation import NODES
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw, Friction, points_friction, pull, ring_friction
 from reference_model.ensemble.core.stepping.linear import complex_zeros, length_of, solve, zeros

@@ -10,7 +10,7 @@ from plain_engines import as_disc
 from plain_slip import slide
 
 from reference_model import PinOnDisc, SimulationError, simulate
-from reference_model.motion.polar_form import simulate_polar_form
+from reference_model.formulas.pin.polar_form import simulate_polar_form
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 TO_WHIRL = [0.1, 0.0, 0.03, 0.0]  # a start of Fig. 5

@@ -12,7 +12,7 @@ from scipy.integrate import DOP853
 
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.rates import rates
-from reference_model.core.parts import inlined, part
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 NAMES = ("x", "y", "ux", "uy", "r", "angle", "t")

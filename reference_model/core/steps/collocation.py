@@ -14,7 +14,7 @@ from scipy.special import roots_jacobi
 from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.points import turning_of_friction
 from reference_model.core.forces.rates import friction, growth, secant, tangent
-from reference_model.core.parts import part
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 NODES = 8

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from reference_model.contact import Points, largest_wrench, polygon_patch, wrench_of_slip
-from reference_model.motion.pushing import Pushing
+from reference_model.contact.pushing import Pushing
 
 HALF = 0.05
 TWO_FEET = Points([(-HALF, 0.0, 0.5), (HALF, 0.0, 0.5)])

@@ -1,0 +1,1 @@
+"""Steps of both methods: explicit, and by collocation."""

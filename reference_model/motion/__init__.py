@@ -1,1 +1,0 @@
-"""Event-driven simulation of slip and stick."""
