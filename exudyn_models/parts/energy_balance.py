@@ -105,18 +105,10 @@ def add_energy_balance(
     """
     require_kind("mbs", mbs, exu.MainSystem)
     unit = positive_number("unit", unit, "J")
-    for name, powers in (("gains", gains), ("losses", losses)):
-        require_kind(name, powers, Mapping)
-        for key, power in powers.items():
-            require_callable(f"{name}[{key!r}]", power, "mbs", "t")
+    _check_powers(gains, losses)
     require_kind("stored", stored, Sequence)
     for i, energy in enumerate(stored):
         require_callable(f"stored[{i}]", energy, "mbs")
-    if not gains and not losses:
-        raise ValueError("gains and losses are both empty: an energy balance needs at least one power")
-    for name in gains:
-        if name in losses:
-            raise ValueError(f"gains, losses: {name!r} names both a gain and a loss; use two names")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)
@@ -135,6 +127,18 @@ def add_energy_balance(
         return balance
 
     return read
+
+
+def _check_powers(gains: Mapping[str, Power], losses: Mapping[str, Power]) -> None:
+    for name, powers in (("gains", gains), ("losses", losses)):
+        require_kind(name, powers, Mapping)
+        for key, power in powers.items():
+            require_callable(f"{name}[{key!r}]", power, "mbs", "t")
+    if not gains and not losses:
+        raise ValueError("gains and losses are both empty: an energy balance needs at least one power")
+    for name in gains:
+        if name in losses:
+            raise ValueError(f"gains, losses: {name!r} names both a gain and a loss; use two names")
 
 
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:

@@ -6,7 +6,7 @@ from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.rates import rates
 from reference_model.core.memory import EVALUATIONS, RECORDED, carried, pending, put
 from reference_model.core.steps.collocation import at
-from reference_model.core.steps.explicit import SIZE, Unknowns, component, inside, take
+from reference_model.core.steps.explicit import SIZE, Unknowns, component, inside, interpolate, take
 from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
@@ -31,6 +31,20 @@ def is_accurate(h: float, F: FloatArray, tolerance: float, law: Law) -> bool:
         scale = tolerance * (1.0 + abs(y[v]) if v < 5 else 1.0)
         error = max(error, 0.5 * abs(component(F, 0.5, v)[1] - h * found[v]) / scale)
     return error <= AS_GOOD
+
+
+@part
+def record(
+    y: Unknowns, f: Unknowns, new: Unknowns, last: Unknowns, h: float, tolerance: float, memory: FloatArray,
+    times: FloatArray, out: FloatArray, law: Law, K: FloatArray, F: FloatArray,
+) -> None:  # fmt: skip
+    """Record times within an explicit step from ``y`` to ``new``, where the rates are ``f`` and ``last``."""
+    interpolate(y, new, last, h, law, K, F)
+    memory[EVALUATIONS] += 4.0
+    if is_accurate(h, F, tolerance, law):
+        record_step(y, new, F, memory, times, out, law)
+    else:
+        record_by_steps(y, f, new, h, memory, times, out, law, K)
 
 
 @part

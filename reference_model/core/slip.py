@@ -23,7 +23,7 @@ from reference_model.core.memory import (
     seen,
     speed_of,
 )
-from reference_model.core.recording import Creep, is_accurate, record_by_steps, record_step
+from reference_model.core.recording import Creep, record
 from reference_model.core.rest import NOISE, creep_of
 from reference_model.core.steps.explicit import Unknowns, component, error_of, factor_of, interpolate, take
 from reference_model.core.surfaces import crossing, grip, may_cross
@@ -200,12 +200,7 @@ def slide(
         elif event != NOWHERE:
             memory[event] = -memory[event]
         if pending(memory, times, new[6]):
-            interpolate(y, new, last, h, law, K, F)
-            memory[EVALUATIONS] += 4.0
-            if is_accurate(h, F, tolerance, law):
-                record_step(y, new, F, memory, times, out, law)
-            else:
-                record_by_steps(y, f, new, h, memory, times, out, law, K)
+            record(y, f, new, last, h, tolerance, memory, times, out, law, K, F)
         memory[STEP] = usual
         memory[STEPS] += 1.0
         apart = (0.0, 0.0, new[2] - y[2], new[3] - y[3], new[4] - y[4], 0.0, 0.0)

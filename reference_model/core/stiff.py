@@ -80,6 +80,20 @@ def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
 
 
 @part
+def onward(y: Unknowns, h: float, law: Law) -> FloatArray:
+    """Return the unknowns at the nodes of a step of length ``h`` if the slip stays the same, shape (NODES, 6)."""
+    guess, start = np.empty((NODES, 6)), six(y)
+    ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
+    for i in range(NODES):
+        place = 0.5 * h * (POINTS[i] + 1.0)
+        guess[i] = start
+        guess[i, 0] += place * (ux - law.omega * y[1])
+        guess[i, 1] += place * (uy + law.omega * y[0])
+        guess[i, 5] += place * (law.omega + y[4] / law.gyration)
+    return guess
+
+
+@part
 def slip_stiffly(
     y: Unknowns,
     memory: FloatArray,
@@ -99,17 +113,7 @@ def slip_stiffly(
             break
         start = six(y)
         h = min(h, end - y[6])
-        if known:
-            guess = ahead(coefficients, h, before)
-        else:
-            guess = np.empty((NODES, 6))
-            ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
-            for i in range(NODES):
-                place = 0.5 * h * (POINTS[i] + 1.0)
-                guess[i] = start
-                guess[i, 0] += place * (ux - law.omega * y[1])
-                guess[i, 1] += place * (uy + law.omega * y[0])
-                guess[i, 5] += place * (law.omega + y[4] / law.gyration)
+        guess = ahead(coefficients, h, before) if known else onward(y, h, law)
         memory[WORK] += WORK_OF_STEP
         memory[EVALUATIONS] += 40.0
         solved, values = solve(start, h, guess, law)
