@@ -105,10 +105,10 @@ def add_energy_balance(
     """
     require_kind("mbs", mbs, exu.MainSystem)
     unit = positive_number("unit", unit, "J")
-    _check_powers(gains, losses)
     require_kind("stored", stored, Sequence)
     for i, energy in enumerate(stored):
         require_callable(f"stored[{i}]", energy, "mbs")
+    _check_powers(gains, losses)
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)
