@@ -58,9 +58,9 @@ def simulate(
     contact
         Friction law of a disc; None for the law of the parameters.
     compiled
-        Whether to use compiled code, which gives the same result and is made in the first call on a machine. It
-        knows pins, rings, contact points and annuli under uniform pressure. None: use it if this machine has it, or
-        the runs of this process in Python have taken as long as making it.
+        Whether to use compiled code. The result is the same, and the first call on a machine compiles. The code knows
+        pins, rings, contact points and annuli under uniform pressure. None: use it if this machine has it, or if runs
+        of this process in Python have taken as long as compiling would.
 
     """
     global _interpreted
@@ -74,10 +74,10 @@ def simulate(
             f"contact = {contact}: compiled code knows a Ring, Points, and an Annulus under uniform pressure that is "
             "not very thin; omit compiled=True"
         )
-    if compiled is None:
-        compiled = is_compilable(law) and (_interpreted > COMPILATION or is_compiled())
-    if compiled:
+    avoidable = compiled is None and is_compilable(law)
+    if compiled or (avoidable and (_interpreted > COMPILATION or is_compiled())):
         return simulate_by(compiled_core(), system, law, start, moments, tolerance)
     trajectory = simulate_by(follow, system, law, start, moments, tolerance)
-    _interpreted += trajectory.solution.wall_time
+    if avoidable:
+        _interpreted += trajectory.solution.wall_time
     return trajectory

@@ -132,9 +132,7 @@ def law_of(system: System, contact: IsotropicContact | Points, unit: Units) -> L
             outer, inner, load, own = _radii(contact, gyration)
             moment = system.shaft_damping * abs(system.disc_speed - system.shaft_speed)
             held = force_beside(contact, system.friction_force, moment)
-            hold = (
-                -1.0 if held is None else friction * held / system.friction_force if friction > 0.0 else 0.0
-            )
+            hold = -1.0 if held is None else held / system.mass * unit.time**2 / unit.length
         gyration /= unit.length
     scalars = (
         system.damping / system.mass * unit.time, support.stiffness, support.offset, support.hardening,
@@ -158,7 +156,7 @@ def _radii(contact: IsotropicContact, gyration: float) -> tuple[float, float, fl
     radii = sorted((float(radius) / gyration for radius in contact.resting_radii), reverse=True)
     if len(radii) > 2:
         raise ValueError(f"resting_radii = {contact.resting_radii}: at most two radii are possible")
-    outer, inner = (radii or [1.0])[0], (radii[1:] or [0.0])[0]  # steps may end anywhere
+    outer, inner = (radii or [1.0])[0], (radii[1:] or [0.0])[0]  # where there is no kink, a step may end too
     return outer, inner, OWN, OwnLaw(contact, gyration)
 
 

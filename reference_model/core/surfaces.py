@@ -117,30 +117,32 @@ def crossing(which: int, side: float, y: Unknowns, F: FloatArray, law: Law) -> f
         found = beyond and seen
         if not beyond:
             before, seen = after, True
-    if not found:
-        return 1.0
+    return changes_sign(which, False, before, after, F, law) if found else 1.0
+
+
+@part
+def turning_back(which: int, F: FloatArray, law: Law) -> float:
+    """Return the share of a step where the value of a surface turns back, or 0."""
+    if not trend(which, inside(F, 0.0), law) * trend(which, inside(F, 1.0), law) < 0.0:
+        return 0.0
+    return changes_sign(which, True, 0.0, 1.0, F, law)
+
+
+@part
+def changes_sign(which: int, turns: bool, before: float, after: float, F: FloatArray, law: Law) -> float:
+    """Return where a value, or its trend if it ``turns``, changes sign between two shares of a step."""
+    first = signed(which, turns, inside(F, before), law)
     while True:
         middle = 0.5 * (before + after)
         if middle <= before or middle >= after:
             return after
-        if side * value_of(which, inside(F, middle), law) > 0.0:
+        if first * signed(which, turns, inside(F, middle), law) > 0.0:
             before = middle
         else:
             after = middle
 
 
 @part
-def turning_back(which: int, F: FloatArray, law: Law) -> float:
-    """Return the share of a step where the value of a surface turns back, or 0."""
-    first = trend(which, inside(F, 0.0), law)
-    if not first * trend(which, inside(F, 1.0), law) < 0.0:
-        return 0.0
-    before, after = 0.0, 1.0
-    while True:
-        middle = 0.5 * (before + after)
-        if middle <= before or middle >= after:
-            return middle
-        if first * trend(which, inside(F, middle), law) > 0.0:
-            before = middle
-        else:
-            after = middle
+def signed(which: int, turns: bool, y: Unknowns, law: Law) -> float:
+    """Return the value of a surface, or its trend."""
+    return trend(which, y, law) if turns else value_of(which, y, law)

@@ -41,6 +41,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     from compare.sweep.compute.work import OtherCodeError
     from compare.sweep.files import Files, StoreError
     from compare.sweep.store import SweepStore
+    from reference_model.simulation import prepare
 
     folder, store = Files.at(place), None
     files = Files.at(folder.below(STORE))
@@ -49,6 +50,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
             with _reporting_store_errors():
                 _check_writable(folder)
                 store = _existing_store(files, plan, chunk, resume)
+            prepare()
             with trajectories() as progress:
                 if store is None:
                     store = SweepStore.create(files.url, plan, chunk or CHUNK)

@@ -2,6 +2,7 @@
 
 import _thread
 import cmath
+import functools
 import signal
 import subprocess
 import sys
@@ -13,8 +14,10 @@ import pytest
 from random_systems import TIMES, RandomMotion
 
 from compare.claims.parameters import FIG5, FIG5_STARTS
-from reference_model import Annulus, DiscOnDisc, PinOnDisc, simulate
+from reference_model import Annulus, DiscOnDisc, PinOnDisc, Ring, ThreeTermRing, simulate, simulation
+from reference_model.contact.contact_law import IsotropicContact
 from reference_model.core import single
+from reference_model.core.run import follow
 
 SECOND = list(FIG5_STARTS.values())[1]
 """A start with nine stick phases."""
@@ -110,6 +113,68 @@ def test_compiled_code_computes_the_same_bits_as_python(seed):
     plain = simulate(system, random.start, times, compiled=False)
     np.testing.assert_array_equal(found.states, plain.states)
     assert [phase.start for phase in found.phases] == [phase.start for phase in plain.phases]
+
+
+@pytest.fixture
+def without_cache(monkeypatch):
+    """Return the motions that compiled code was asked for."""
+    asked = []
+    monkeypatch.setattr(simulation, "is_compiled", lambda: False)
+    monkeypatch.setattr(simulation, "compiled_core", lambda: asked.append(True) or follow)
+    monkeypatch.setattr(simulation, "_interpreted", 0.0)
+    return asked
+
+
+def test_a_machine_without_compiled_code_compiles_when_python_has_taken_as_long(without_cache, monkeypatch):
+    run = functools.partial(simulate, FIG5, SECOND, [0.0, 1.0])
+    run()
+    assert not without_cache
+    monkeypatch.setattr(simulation, "COMPILATION", 0.0)
+    run()
+    assert without_cache == [True]
+
+
+def test_runs_that_cannot_be_compiled_do_not_count(without_cache):
+    simulate(FIG5, SECOND, [0.0, 1.0], compiled=False)
+    simulate(RING.system, RING.start, [0.0, 1.0], contact=ThreeTermRing(0.1))
+    assert simulation._interpreted == 0.0
+    assert not without_cache
+
+
+class OwnRing(IsotropicContact):
+    """The law of a ring as a user would write it."""
+
+    def __init__(self, radius):
+        self.law = Ring(radius)
+
+    resting_radii = property(lambda self: self.law.resting_radii)
+
+    def shares(self, slip_speed, relative_spin):
+        return self.law.shares(slip_speed, relative_spin)
+
+    def slopes(self, slip_speed, relative_spin):
+        return self.law.slopes(slip_speed, relative_spin)
+
+
+@pytest.mark.parametrize("seed", [7, 19, 49])
+def test_laws_of_the_user_move_a_disc_like_the_laws_of_the_core(seed):
+    random = RandomMotion.of(seed)
+    radius, times = random.system.contact_radius, TIMES[:26]
+    even = Annulus(0.4 * radius, radius, pressure=lambda _: 1.0)
+    for own, known in ((OwnRing(radius), Ring(radius)), (even, Annulus(0.4 * radius, radius))):
+        found, expected = (simulate(random.system, random.start, times, contact=law) for law in (own, known))
+        assert [phase.kind for phase in found.phases] == [phase.kind for phase in expected.phases]
+        assert np.abs(found.states - expected.states).max() < 2.0 * 13e-9
+
+
+def test_a_law_with_more_kinks_than_the_core_can_meet_is_refused():
+    class Three(OwnRing):
+        resting_radii = (0.1, 0.2, 0.3)
+
+    with pytest.raises(
+        ValueError, match=r"resting_radii = \(0.1, 0.2, 0.3\): at most two radii are possible"
+    ):
+        simulate(RING.system, RING.start, [0.0, 1.0], contact=Three(0.1))
 
 
 @pytest.fixture
