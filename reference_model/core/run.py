@@ -10,6 +10,7 @@ from reference_model.core.forces.points import centre_slip
 from reference_model.core.forces.rates import pull, rates
 from reference_model.core.limit import pivot_from_rest
 from reference_model.core.memory import (
+    CREEPS,
     ENDS,
     FAILS,
     FULL,
@@ -103,11 +104,12 @@ def follow(
     law: Law, state: FloatArray, memory: FloatArray, tolerance: float, end: float, times: FloatArray,
     out: FloatArray, phases: FloatArray, most_work: float,
 ) -> None:  # fmt: skip
-    """Continue a run from ``state``, shape (7,), for about ``most_work`` explicit steps.
+    """Continue a run from ``state``, shape (9,), for about ``most_work`` explicit steps.
 
-    The result does not depend on ``most_work``. ``times`` are the requested times, (n,), ``out`` the unknowns without
-    the time, (n, 6), and ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at
-    time 0 and takes steps with errors of ``tolerance``.
+    The state contains the unknowns, and as a result the slip of the centre. The motion does not depend on
+    ``most_work``. ``times`` are the requested times, (n,), ``out`` the unknowns without the time, (n, 6), and
+    ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at time 0, and the errors
+    of its steps are of the size of ``tolerance``.
     """
     law = seen_from(int(memory[POINT]) - 1, memory[SENSE], law)
     y = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
@@ -130,6 +132,7 @@ def follow(
         else:
             y, law = slip_on(y, memory, tolerance, end, work, times, out, law, K, F)
     memory[POINT], memory[SENSE] = law.point + 1.0, law.sense
+    state[SIZE], state[SIZE + 1] = centre_slip(y[2], y[3], y[4], y[5], law)
     for v in range(SIZE):
         state[v] = y[v]
         if not np.isfinite(y[v]):
@@ -185,6 +188,7 @@ def slip_on(
     law: Law, K: FloatArray, F: FloatArray,
 ) -> tuple[Unknowns, Law]:  # fmt: skip
     """Follow slip to its end in closed form, or by steps of the method that suits it."""
+    memory[WORK] += 1.0
     whole = seen_from(CENTRE, 0.0, law)
     if ends_together(y, law):
         y, law = seen(y, law, whole), whole
@@ -195,6 +199,7 @@ def slip_on(
     creep = creep_from(y, tolerance, law)
     if creep[0] > 0.0:
         memory[STEPS] += 1.0
+        memory[CREEPS] = 1.0
         return record_carried(seen(y, law, whole), end, creep, memory, times, out, whole), whole
     if memory[SHORT] >= memory[PATIENCE]:
         return slip_stiffly(y, memory, tolerance, end, times, out, law), law

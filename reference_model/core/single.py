@@ -30,6 +30,7 @@ from reference_model.core.memory import (
     STEPS,
 )
 from reference_model.core.run import advance
+from reference_model.core.steps.explicit import SIZE
 from reference_model.core.units import Frame, Units
 from reference_model.numerics.cache_folders import has_files
 from reference_model.numerics.parts import digest_with_parts, register_parts
@@ -85,15 +86,21 @@ class OwnLaw:
 @functools.cache
 def compiled_core() -> Core:
     """Return :func:`reference_model.core.run.follow` as compiled code, which is made in the first call."""
-    from reference_model.numerics.compiled_once import CompiledOnce
-
-    register_parts()
-    kernel = CompiledOnce(advance, PACKAGE, _digest())
+    kernel = compiled_advance()
 
     def core(law: Law, *arguments: Any) -> None:
         kernel(*arguments, np.array(law[:SCALARS]), law.around)
 
     return core
+
+
+@functools.cache
+def compiled_advance() -> Any:
+    """Return :func:`reference_model.core.run.advance` as a ``CompiledOnce``."""
+    from reference_model.numerics.compiled_once import CompiledOnce
+
+    register_parts()
+    return CompiledOnce(advance, PACKAGE, _digest())
 
 
 def is_compiled() -> bool:
@@ -173,7 +180,7 @@ def simulate_by(
     unit = Units.of(system, start)
     frame, law = Frame.of(system, unit), law_of(system, contact, unit)
     columns = [0, 1, 5, 2, 3, 4] if isinstance(system, DiscOnDisc) else [0, 1, 2, 3]
-    state = np.zeros(7)
+    state = np.zeros(SIZE + 2)
     state[columns] = frame.unknowns(start)
     scaled = (moments - moments[0]) / unit.time
     local = _tolerance_of_steps(system, unit, float(scaled[-1]), tolerance)

@@ -4,7 +4,8 @@ import math
 
 from reference_model.core.forces.law import CENTRE, Law, seen_from
 from reference_model.core.forces.points import centre_slip, point_to_follow
-from reference_model.core.forces.rates import rates
+from reference_model.core.forces.rates import growth, rates
+from reference_model.core.limit import LEAST_SLIP
 from reference_model.core.memory import (
     EVALUATIONS,
     FAILS,
@@ -19,6 +20,7 @@ from reference_model.core.memory import (
     STEPS,
     WORK,
     along,
+    carried,
     pending,
     seen,
     speed_of,
@@ -68,6 +70,9 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
     if fall <= 0.0:
         return -1.0
     left = s / fall
+    if law.point == CENTRE and left * left < REST_TIME:
+        growing = (fall_after(y, s, left, law) - fall) / left
+        left = 2.0 * s / (fall + math.sqrt(max(fall * fall + 2.0 * growing * s, 0.0)))
     reversal = REVERSAL if law.point == CENTRE else REVERSAL * min(1.0, abs(y[4]) / SLOW)
     if left * left < REST_TIME:
         across, pace = 0.0, abs(law.omega) + law.shaft + 1.0
@@ -79,6 +84,15 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
         if left * math.sqrt(across) / fall + left * left * pace < REST_TIME or together or s < reversal:
             return left
     return 0.0 if s < reversal and fall < 10.0 * NOISE * law.friction else -1.0
+
+
+@part
+def fall_after(y: Unknowns, s: float, left: float, law: Law) -> float:
+    """Return the rate at which slip falls after ``left``, in which the slip speed ``s`` of the centre falls to 0."""
+    share = LEAST_SLIP / s
+    end = carried(y, left, 0.5 * left, share, law)
+    a = growth(end[0], end[1], end[2], end[3], end[4], end[5], law)
+    return -(a[0] * end[2] + a[1] * end[3] + a[2] * end[4]) / LEAST_SLIP
 
 
 @part

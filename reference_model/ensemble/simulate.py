@@ -7,8 +7,10 @@ from dataclasses import fields, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference_model.contact.contact_law import Contact, contact_of
+from reference_model.core.single import is_compilable
 from reference_model.ensemble.end_states import Ensemble
-from reference_model.ensemble.task import Task, parameter_table
+from reference_model.ensemble.task import OF_SUPPORT, Task, parameter_table
 from reference_model.systems import (
     FloatArray,
     PinOnDisc,
@@ -21,10 +23,8 @@ from reference_model.systems import (
     require_whole,
 )
 
-UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
-
 MOST_POINTS = 24
-"""Largest number of contact points: their sum is unrolled, which takes long to compile for more."""
+"""Largest number of contact points in lanes: their sum is unrolled, which takes long to compile for more."""
 
 
 MOST_THREADS = 1024
@@ -38,6 +38,7 @@ def simulate_ensemble(
     duration: float,
     tolerance: float = 1e-9,
     parameters: Mapping[str, ArrayLike] | None = None,
+    contact: Contact | None = None,
     early_end: bool = True,
     threads: int | None = None,
 ) -> Ensemble:
@@ -49,7 +50,7 @@ def simulate_ensemble(
     Parameters
     ----------
     system
-        Common parameters, with a linear support.
+        Common parameters.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
         Initial states, one per trajectory or one for all.
     duration
@@ -59,6 +60,8 @@ def simulate_ensemble(
         have errors below 4e-9 and 99 % below 1e-8; the largest is 2e-7.
     parameters
         Parameters that differ between trajectories: arrays of shape (n,) by name.
+    contact
+        As in ``reference_model.simulate``; a law of your own is not possible.
     early_end
         Whether a trajectory ends as soon as its end state is certain (:mod:`.pin.end_states`).
     threads
@@ -66,10 +69,10 @@ def simulate_ensemble(
 
     """
     require_system(system)
-    require_supported(system)
     starts = _checked_starts(system, initial_states)
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
     _require_same_number(len(starts), varied)
+    in_lanes = _in_lanes(system, contact) and not varied.keys() & set(OF_SUPPORT)
     duration = positive_number("duration", duration, "s")
     tolerance = checked_tolerance(tolerance)
     if threads is None:
@@ -77,9 +80,13 @@ def simulate_ensemble(
     require_whole("threads", threads, least=1, most=MOST_THREADS)
     require_flag("early_end", early_end)
 
-    task = Task(parameter_table(system, varied), starts, np.full(1, duration))
+    task = Task(parameter_table(system, varied, () if in_lanes else OF_SUPPORT), starts, np.full(1, duration))
     # Each driver loads its own compiled code.
-    if isinstance(system, PinOnDisc):
+    if not in_lanes:
+        from reference_model.ensemble.disc.driver import simulate_any
+
+        results = simulate_any(system, contact, task, tolerance, early_end, threads)
+    elif isinstance(system, PinOnDisc):
         from reference_model.ensemble.pin.driver import simulate_pins
 
         results = simulate_pins(system, task, tolerance, early_end, bool(varied), threads)
@@ -90,20 +97,15 @@ def simulate_ensemble(
     return results.ensemble(varied.get("friction_force", system.friction_force))
 
 
-def require_supported(system: System) -> None:
-    """Raise ``ValueError`` naming the parameter if the kernels of ensembles do not support a system."""
-    if not system.linear_support:
-        name = next(name for name in ("hardening", "stop_stiffness") if getattr(system, name) != 0.0)
+def _in_lanes(system: System, contact: Contact | None) -> bool:
+    """Return whether lanes know a system; raise ``ValueError`` if compiled code does not know its contact."""
+    if not is_compilable(contact_of(system, contact)):
         raise ValueError(
-            f"{name} = {getattr(system, name):g}: ensembles need a linear support, because they compute release and "
-            "the surroundings of an equilibrium in closed form; set it to 0 or simulate single motions"
+            f"contact = {contact}: ensembles know a Ring, Points, and an Annulus under uniform pressure that is not "
+            "very thin; simulate single motions"
         )
-    points = getattr(system, "contact_points", None) or 0
-    if points > MOST_POINTS:
-        raise ValueError(
-            f"contact_points = {points}: ensembles support up to {MOST_POINTS}; for more use the continuous ring, "
-            "contact_points = None"
-        )
+    few = (getattr(system, "contact_points", None) or 0) <= MOST_POINTS
+    return system.linear_support and contact is None and few
 
 
 def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
@@ -117,7 +119,7 @@ def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
 
 
 def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArray:
-    allowed = [field.name for field in fields(system) if field.name not in (*UNSUPPORTED, "contact_points")]
+    allowed = [field.name for field in fields(system) if field.name != "contact_points"]
     if name not in allowed:
         raise ValueError(
             f"parameters: {name!r} cannot vary between trajectories; choose from {', '.join(allowed)}"

@@ -16,6 +16,9 @@ OF_PIN = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offse
 OF_DISC = (*OF_PIN, "polar_inertia", "contact_radius", "shaft_damping", "shaft_speed")
 """Parameters in the order of the kernels."""
 
+OF_SUPPORT = ("hardening", "stop_gap", "stop_stiffness")
+"""Parameters that follow where the support is not linear."""
+
 
 class Task(NamedTuple):
     """Trajectories to simulate; each array has a row per trajectory, or one for all.
@@ -35,9 +38,11 @@ class Task(NamedTuple):
         return max(len(self.parameters), len(self.starts))
 
 
-def parameter_table(system: System, varied: Mapping[str, FloatArray] | None = None) -> FloatArray:
-    """Return the parameters, shape (1 or n, parameters); those ``varied`` (n,) have a row per trajectory."""
-    names = OF_PIN if isinstance(system, PinOnDisc) else OF_DISC
+def parameter_table(
+    system: System, varied: Mapping[str, FloatArray] | None = None, more: tuple[str, ...] = ()
+) -> FloatArray:
+    """Return the parameters, then ``more``, shape (1 or n, parameters); ``varied`` ones (n,) differ by trajectory."""
+    names = (*(OF_PIN if isinstance(system, PinOnDisc) else OF_DISC), *more)
     columns = [(varied or {}).get(name, getattr(system, name)) for name in names]
     return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns))).astype(float)
 

@@ -43,10 +43,21 @@ class CompiledOnce:
 
     def __call__(self, *arguments: Any) -> None:
         """Call the function, compiled or loaded for new argument types."""
-        kind = tuple(map(numba.typeof, arguments))
+        self.compiled(*arguments)(*arguments)
+
+    def compiled(self, *arguments: Any) -> Any:
+        """Return the function compiled for the types of ``arguments``; another compiled function may call it."""
+        kind = tuple(map(_type_of, arguments))
         if kind not in self.kinds:
             self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True, digest=self.digest)
-        self.kinds[kind](*arguments)
+        return self.kinds[kind]
+
+
+def _type_of(argument: Any) -> Any:
+    """Return numba's type, of a compiled function by its signature, so that it is called and not compiled again."""
+    if hasattr(argument, "nopython_signatures"):
+        return numba.types.FunctionType(argument.nopython_signatures[0])
+    return numba.typeof(argument)
 
 
 def compiled_for(

@@ -24,9 +24,6 @@ REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 the number of steps is out of bounds; an implicit step may be worthwhile.
 """
 
-MANY = 40.0
-"""Number of successive short steps that indicates stiffness."""
-
 SMALLEST_STEP = 1e-13
 
 
@@ -49,7 +46,7 @@ class Memory(Record):
     """Scalar data of a lane.
 
     ``length`` and ``rate`` are the unit of length in m and the inverse unit of time in 1/s, ``tick`` is the time
-    between checks, ``span`` the proposed implicit step.
+    between checks. The next step by the core lasts ``span``; it has the ``patience`` for short steps of the last one.
     """
 
     number: int
@@ -60,6 +57,7 @@ class Memory(Record):
     tick: float
     window: Window
     span: float
+    patience: float
 
 
 @written_out

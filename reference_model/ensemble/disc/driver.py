@@ -1,114 +1,102 @@
-"""Ensembles of discs; single runs follow points that rest until all slip."""
+"""Ensembles of discs, and of bodies that only the core knows."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from reference_model.contact.contact_law import Contact, contact_of
+from reference_model.contact.points import Points
+from reference_model.core.forces.law import SCALARS, WIDTH
+from reference_model.core.forces.points import around_of
+from reference_model.core.single import law_of
+from reference_model.core.units import Units
+from reference_model.ensemble.core.by_core import arrays_for, core_for_kernels
 from reference_model.ensemble.core.lanes import row_of
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
-from reference_model.ensemble.disc.kernel import run_points, run_rings
-from reference_model.ensemble.disc.lanes import DiscSettings
+from reference_model.ensemble.disc.kernel import run_by_core, run_points, run_rings
+from reference_model.ensemble.disc.lanes import DiscSettings, Setup
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
-from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Results
-from reference_model.ensemble.task import OF_DISC, Task, in_chunks
-from reference_model.simulation import simulate
-from reference_model.systems import DiscOnDisc, FloatArray
-from reference_model.trajectory import Trajectory
-
-FIRST_SPAN = 0.1
-"""Duration of the first single run in turns of the master disc or free centre; the next ones are twice as long."""
+from reference_model.ensemble.end_states import Results
+from reference_model.ensemble.task import OF_DISC, OF_PIN, OF_SUPPORT, Task, in_chunks
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration."""
+
+SPIN_DOWN = 1.0
+"""Scaled shaft damping of a pin, whose spin is not a part of its motion and stays zero."""
 
 
 def simulate_discs(
     disc: DiscOnDisc, task: Task, tolerance: float, early_end: bool, varied: bool, threads: int
 ) -> Results:
-    settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
-    return _run_through(disc, task, settings, tolerance, threads)
+    """Simulate discs on a ring or on points with linear supports, in lanes."""
+    number = disc.contact_points or 0
+    around = tuple(f(2.0 * math.pi * i / number) for i in range(number) for f in (math.cos, math.sin))
+    law, points = contact_of(disc), np.zeros(0)
+    if isinstance(law, Points):
+        points = around_of(list(law), disc.contact_radius)
+    regions = no_regions() if varied else trapping_regions(disc)
+    kernel = run_points if number else run_rings
+    return _run(kernel, task, around, points, regions, tolerance, early_end, threads, by_core=False)
 
 
-def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDArray[Any]) -> DiscSettings:
-    points = disc.contact_points or 0
-    around = tuple(f(2.0 * math.pi * i / points) for i in range(points) for f in (math.cos, math.sin))
-    return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions)
-
-
-def _run(task: Task, settings: DiscSettings, threads: int) -> Results:
-    kernel = run_points if settings.around else run_rings
-    results = Results.empty(task.size, DiscOnDisc.state_size)
-
-    def run(stoppable: Task, first: int, last: int) -> None:
-        kernel(stoppable, settings, results, first, last)
-
-    in_chunks(run, task, threads)
+def simulate_any(
+    system: System, contact: Contact | None, task: Task, tolerance: float, early_end: bool, threads: int
+) -> Results:
+    """Simulate bodies on any support, with any contact that the core knows, without lanes."""
+    law = contact_of(system, contact)
+    points = np.zeros(0)
+    if isinstance(law, Points):
+        points = around_of(list(law), 1.0 if contact else system.contact_radius)  # type: ignore[union-attr]
+    starts = task.starts
+    if isinstance(system, PinOnDisc):
+        speed = task.parameters[:, OF_PIN.index("disc_speed")]
+        x, y, vx, vy, spin = np.broadcast_arrays(*starts.T, speed)
+        starts = np.column_stack((x, y, np.zeros_like(x), vx, vy, spin))
+    table = np.array([_scaled(system, contact, task, i) for i in range(task.size)])
+    results = _run(
+        run_by_core, Task(table, starts, task.durations), (), points, no_regions(), tolerance, early_end, threads,
+        by_core=True,
+    )  # fmt: skip
+    if isinstance(system, PinOnDisc):
+        return results._replace(states=results.states[:, [0, 1, 3, 4]])
     return results
 
 
-def _run_through(
-    disc: DiscOnDisc, task: Task, settings: DiscSettings, tolerance: float, threads: int
-) -> Results:
-    results = _run(task, settings, threads)
+def _scaled(system: System, contact: Contact | None, task: Task, number: int) -> list[float]:
+    """Return the scaled parameters of the core, the units of length and rate, η, the speed of the disc, and κ."""
+    names = (*(OF_PIN if isinstance(system, PinOnDisc) else OF_DISC), *OF_SUPPORT)
+    parameters: dict[str, Any] = dict(zip(names, row_of(task.parameters, number).tolist(), strict=True))
+    one = replace(system, **parameters)
+    unit = Units.of(one, row_of(task.starts, number))
+    row = list(law_of(one, contact_of(one, contact), unit)[:SCALARS])
+    if isinstance(one, PinOnDisc):
+        kappa = reach = unit.length
+        row[12] = SPIN_DOWN
+    else:
+        kappa = math.sqrt(one.polar_inertia / one.mass)
+        reach = one.contact_radius if contact is None else 1.0
+    return [*row, unit.length, 1.0 / unit.time, reach / kappa, one.disc_speed, kappa]
+
+
+def _run(
+    kernel: Any, task: Task, around: tuple[float, ...], points: FloatArray, regions: NDArray[Any], tolerance: float,
+    early_end: bool, threads: int, *, by_core: bool,
+) -> Results:  # fmt: skip
+    results = Results.empty(task.size, DiscOnDisc.state_size)
+    local, core = tolerance_of_steps(tolerance), core_for_kernels()
+
+    def run(stoppable: Task, first: int, last: int) -> None:
+        arrays = arrays_for(len(points) // WIDTH)
+        setup = Setup(DiscSettings(local, early_end, around, regions), points, arrays, by_core)
+        kernel(stoppable, setup, core, results, first, last)
+
+    in_chunks(run, task, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
-    handed = np.flatnonzero(results.ends == HANDED_OVER)
-    while handed.size:
-        for i in handed.tolist():
-            parameters: dict[str, Any] = dict(zip(OF_DISC, row_of(task.parameters, i).tolist(), strict=True))
-            one = replace(disc, **parameters)
-            _continue_until_slip(one, results, i, float(durations[i]), tolerance, settings.early)
-        handed = handed[results.ends[handed] == HANDED_OVER]
-        if handed.size:
-            table = task.parameters[handed] if len(task.parameters) > 1 else task.parameters
-            rest = Task(table, results.states[handed], durations[handed] - results.times[handed])
-            again = _run(rest, settings, threads)
-            again.times[:] += results.times[handed]
-            again.steps[:] += results.steps[handed]
-            for name, values in again._asdict().items():
-                getattr(results, name)[handed] = values
-            handed = handed[again.ends == HANDED_OVER]
     at_end = results.times > durations * (1.0 - ROUNDED)
     results.times[at_end] = durations[at_end]
     return results
-
-
-def _continue_until_slip(
-    disc: DiscOnDisc, results: Results, i: int, duration: float, tolerance: float, early_end: bool
-) -> None:
-    state, t = results.states[i], float(results.times[i])
-    for motion, stuck in _through_rest(disc, state, t, duration, tolerance):
-        results.steps[i] += motion.solution.steps
-        state, t = motion.at_end, float(motion.times[-1])
-        if stuck:
-            radius = math.hypot(*state[:2])
-            results.ends[i], results.measures[i] = STUCK, (radius, radius, 0.0)
-            if early_end:
-                break
-    if t == duration and results.ends[i] == HANDED_OVER:
-        results.ends[i], results.measures[i] = UNDECIDED, math.nan
-    results.states[i], results.times[i] = state, t
-
-
-def _through_rest(
-    disc: DiscOnDisc, state: FloatArray, t: float, duration: float, tolerance: float
-) -> Iterator[tuple[Trajectory, bool]]:
-    """Yield the motion from ``state`` at ``t`` by single runs until one ends in slip, or to the end.
-
-    Each part has a flag: stick for a whole turn, which counts as permanent.
-    """
-    rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
-    turn = 2.0 * math.pi / min(rates) if rates else duration
-    span = FIRST_SPAN * turn
-    while t < duration:
-        end = t + span if duration - (t + span) > ROUNDED * duration else duration
-        motion = simulate(disc, state, [t, end], tolerance=tolerance)
-        t, state, last = float(motion.times[-1]), motion.at_end, motion.phases[-1]
-        stuck = last.kind == "stick" and last.end - last.start >= turn
-        yield motion, stuck
-        if last.kind == "slip":
-            break
-        span = duration if stuck else 2.0 * span

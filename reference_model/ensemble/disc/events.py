@@ -18,12 +18,11 @@ trajectory ends.
 
 from collections.abc import Callable
 
-import numpy as np
-
+from reference_model.ensemble.core.by_core import law_in
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import EXTREME, IS_DUE, LOST, REST, RIGHTMOST, STIFF
 from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.records import fill, put
+from reference_model.ensemble.core.records import fill
 from reference_model.ensemble.core.recurrence import (
     ACCURACY,
     NO_WINDOW,
@@ -40,19 +39,10 @@ from reference_model.ensemble.core.stepping.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
-from reference_model.ensemble.core.stepping.implicit import (
-    WORTH,
-    Collocation,
-    failed,
-    first_try,
-    patience,
-    stride_with,
-)
 from reference_model.ensemble.core.stepping.linear import quadratic_form
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     BOTH,
-    NEAR_REST,
     OF_PEAK,
     OF_TURN,
     RADII,
@@ -60,24 +50,18 @@ from reference_model.ensemble.disc.lanes import (
     DiscLanes,
     DiscMemory,
     DiscSettings,
-    DiscState,
-    Edge,
-    Rates,
-    flags_of,
+    Setup,
     last_step,
     law_of,
     rates_at,
     state_at,
+    take_in,
 )
+from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
-Stride = Callable[[DiscLanes, DiscMemory, int, DiscLaw], None]
-"""Replaces the trial step by an implicit one, if worthwhile."""
-
-Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscSettings], bool]
-
-Attracts = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
-"""Returns whether a nearby equilibrium or circle attracts, as ``stability.attracts``."""
+ByCore = Callable[[DiscLanes, DiscMemory, int, DiscLaw, Setup], bool]
+"""Replaces the trial step by one of the core; returns whether the trajectory ends."""
 
 STILL = 1e-2
 """Largest oscillation of a motion that approaches a point (relative to |ωz|) or a circle (to the radius)."""
@@ -88,26 +72,27 @@ def handle_flag_with(
     lanes: DiscLanes,
     memory: DiscMemory,
     lane: int,
-    settings: DiscSettings,
-    stride: Stride,
-    slow: Slow,
-    attracts: Attracts,
+    setup: Setup,
+    step_by_core: ByCore,
 ) -> bool:
+    settings = setup.settings
     law = law_of(lanes, lane, settings.around)
-    if int(lanes.flag[lane]) & STIFF:
-        stride(lanes, memory, lane, law)
+    if int(lanes.flag[lane]) & (STIFF | REST) and step_by_core(lanes, memory, lane, law, setup):
+        return True
     flag = int(lanes.flag[lane])
     if flag & LOST:
         memory.end = UNDECIDED
         return True
     passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]
-    if flag & IS_DUE and passed and check_due(lanes, memory, lane, law, settings, attracts):
+    if flag & IS_DUE and passed and check_due(lanes, memory, lane, law, setup):
         return True
     if lanes.trial.state.time[lane] >= lanes.duration[lane] - AT_END:
         return True
-    if flag & (RIGHTMOST | EXTREME) and passed and record_extreme(lanes, memory, lane, flag, law, settings):
-        return True
-    return bool(flag & REST) and slow(lanes, memory, lane, law, settings)
+    return (
+        flag & (RIGHTMOST | EXTREME) > 0
+        and passed
+        and record_extreme(lanes, memory, lane, flag, law, settings)
+    )
 
 
 @scalar
@@ -188,9 +173,8 @@ def record_turn(
 
 
 @written_out
-def check_due(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings, attracts: Attracts
-) -> bool:
+def check_due(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setup: Setup) -> bool:
+    settings = setup.settings
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
     state, k = state_at(lanes.trial, lane), rates_at(lanes.trial, lane)
     velocity = (1.0 / k.time) * complex(k.x, k.y)
@@ -219,7 +203,8 @@ def check_due(
     if not met or (swing > STILL * abs(law.disc_speed * z) and not centred):
         return False
     circle = law.offset == 0.0 and not centred
-    if not attracts(z, v, r, law, circle, ACCURACY * scale):
+    take_in(memory, law, setup)
+    if not attracts(z, v, r, law_in(setup.room), circle, ACCURACY * scale):
         return False
     memory.end = WHIRL if circle else SELF_CENTRED
     radius = 0.0 if centred else abs(z)
@@ -248,51 +233,3 @@ def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: Di
             )
             return True
     return False
-
-
-# --- Implicit steps in place of many short ones
-
-
-@written_out
-def disc_stride_with(
-    lanes: DiscLanes,
-    memory: DiscMemory,
-    lane: int,
-    law: DiscLaw,
-    rates: Rates,
-    edge: Edge,
-    collocate: Collocation,
-) -> None:
-    now, trial = lanes.now, lanes.trial
-    state, k = state_at(now, lane), rates_at(now, lane)
-    short = now.step[lane] * k.time
-    left = lanes.duration[lane] - state.time
-    least = min(WORTH * short, left)
-    span = first_try(memory.span, least, left)
-    start = np.array((state.ux, state.uy, state.r))
-    z, ux, uy, r, angle, took, way, following = stride_with(
-        complex(state.x, state.y),
-        state.angle,
-        start,
-        start,
-        span,
-        least,
-        lanes.tolerance[lane],
-        law,
-        collocate,
-    )
-    new = DiscState(z.real, z.imag, ux, uy, r, angle, state.time + took, state.way + way)
-    k1 = DiscState(*rates(new[:6], law))
-    if took == 0.0 or edge(state[:6], k, law)[0] * edge(new[:6], k1, law)[0] < 0.0:
-        memory.span = failed(memory.span)
-        lanes.short[lane] = -patience(memory.span)
-    else:
-        memory.span = following
-        put(trial.state, lane, new)
-        put(trial.rates, lane, k1)
-        trial.step[lane] = now.step[lane]
-        lanes.usual[lane] = 0.0
-        due = new.time >= min(lanes.due[lane], lanes.duration[lane] - AT_END)
-        lanes.flag[lane] = flags_of(
-            state, k, new, k1, NEAR_REST * law.friction, due, False, lanes.watch[lane]
-        )

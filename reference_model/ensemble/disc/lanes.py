@@ -6,13 +6,14 @@ from typing import Annotated, Any, NamedTuple
 
 from numpy.typing import NDArray
 
+from reference_model.core.forces.law import SCALARS, WIDTH
+from reference_model.ensemble.core.by_core import MANY, Room
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
     EXTREME,
     IS_DUE,
     LOST,
-    MANY,
     REST,
     RIGHTMOST,
     SMALLEST_STEP,
@@ -25,7 +26,6 @@ from reference_model.ensemble.core.records import Record, Row, Rows, at, put
 from reference_model.ensemble.core.recurrence import Measures, Series
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output
 from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, Tuple, factor_of, moved, step
-from reference_model.ensemble.disc.slip import direction, grown
 from reference_model.systems import FloatArray
 
 
@@ -63,6 +63,9 @@ class DiscLanes(Lanes):
 Rates = Callable[[Tuple, DiscLaw], Tuple]
 """Returns the rates of the unknowns, as :func:`reference_model.ensemble.disc.slip.ring_rates`."""
 
+RatesInRoom = Callable[[Tuple, DiscLaw, Room], Tuple]
+"""Returns them, perhaps by the law in the room."""
+
 Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
@@ -83,18 +86,6 @@ AT_END = 1e-13
 
 SLOW, NEAR_REST = 0.01, 1e-4
 """Slip speeds, in units of g, below which the tolerance of slip is relative and slip may end, respectively."""
-
-REST_TIME = 1e-12
-"""Largest scaled error of the closed form for coming to rest."""
-
-LEAST_SLIP = 1e-13
-"""Scaled slip speed that counts as zero."""
-
-LONGEST_GROWTH = 10.0
-"""Longest scaled time of slip followed from rest."""
-
-SUDDEN = 0.05
-"""Smallest excess of the pull, as a share of friction, for slip that grows like time: not stiff."""
 
 
 @written_out
@@ -228,65 +219,6 @@ def _motion(state: DiscState, k: DiscState, omega: float) -> tuple[complex, comp
     return complex(state.x, state.y), pace * v, pace * (complex(k.ux, k.uy) + 1j * omega * v)
 
 
-@inlined
-def slowing(state: DiscState, k: DiscState) -> tuple[float, float]:
-    s = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
-    return s, -(state.ux * k.ux + state.uy * k.uy + state.r * k.r) / (s * k.time)
-
-
-@inlined
-def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
-    s, falling = slowing(state_at(lanes.trial, lane), rates_at(lanes.trial, lane))
-    return s, (s / falling if falling > 0.0 else math.inf)
-
-
-@scalar
-def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Bring slip to rest if it ends linearly within a moment or is only rounding; return whether it rests."""
-    trial = lanes.trial
-    state = state_at(trial, lane)
-    x, y, ux, uy, r, angle, t, way = state
-    k = rates_at(trial, lane)
-    s, falling = slowing(state, k)
-    if not falling > 0.0:
-        return False
-    left = s / falling
-    turning_x, turning_y = k.ux / k.time + falling * ux / s, k.uy / k.time + falling * uy / s
-    turning_r = k.r / k.time + falling * r / s
-    bend = left * math.sqrt(turning_x**2 + turning_y**2 + turning_r**2) / falling
-    pace = abs(law.disc_speed) + law.shaft_rate + 1.0
-    if bend + left * left * pace >= REST_TIME:
-        if s <= LEAST_SLIP:
-            put(trial.state, lane, (x, y, 0.0, 0.0, 0.0, angle, t, way))
-        return bool(s <= LEAST_SLIP)
-    delay = min(left, lanes.duration[lane] - t)
-    remains = 1.0 - delay / left
-    mean = 0.5 * (1.0 + remains) * delay
-    middle = complex(x, y) + (0.5 * delay / k.time) * complex(k.x, k.y)
-    z = complex(x, y) + mean * complex(ux, uy) + delay * 1j * law.disc_speed * middle
-    angle += law.disc_speed * delay + law.curling * r * mean
-    way += k.way / k.time * mean
-    put(trial.state, lane, (z.real, z.imag, remains * ux, remains * uy, remains * r, angle, t + delay, way))
-    return True
-
-
-@scalar
-def begin_slip(lanes: DiscLanes, lane: int, z: complex, angle: float, t: float, law: DiscLaw) -> bool:
-    """Begin slip of a disc on a ring from rest; return whether the motion could be resolved."""
-    trial = lanes.trial
-    n, turning, first, taken = direction(z, law)
-    way = trial.state.way[lane]
-    if first > SUDDEN * taken:
-        u = LEAST_SLIP * n
-        put(trial.state, lane, (z.real, z.imag, u.real, u.imag, LEAST_SLIP * turning, angle, t, way))
-        return True
-    left = min(lanes.duration[lane] - t, LONGEST_GROWTH)
-    z, u, r, took, curl, work = grown(z, n, turning, max(first, 0.0), left, law)
-    angle += law.disc_speed * took + law.curling * curl
-    put(trial.state, lane, (z.real, z.imag, u.real, u.imag, r, angle, t + took, way + work))
-    return bool(took > 0.0)
-
-
 # --- Scalar data of each lane
 
 OF_TURN, OF_PEAK = 1, 2
@@ -308,8 +240,15 @@ class Region(Record):
 
 
 class DiscMemory(Memory):
-    """Scalar data of a lane, with the motion at ``checks``, at the largest x (``turns``) and the largest radius."""
+    """Scalar data of a lane, with the motion at ``checks``, at the largest x (``turns``) and the largest radius.
 
+    ``law`` are the parameters for the core. In its last step, ``short`` steps were short, and a
+    rest ended at ``since``.
+    """
+
+    law: Annotated[FloatArray, SCALARS]
+    short: float
+    since: float
     checks: Series
     turns: Series
     peaks: Series
@@ -324,6 +263,19 @@ class DiscSettings(NamedTuple):
     regions: NDArray[Any]
 
 
+class Setup(NamedTuple):
+    """Settings and what a step by the core needs; apart, because passing many arrays takes time.
+
+    ``points`` is ``Law.around`` of the core, with lengths in units of κ/η. If ``by_core`` is set, the core takes all
+    steps.
+    """
+
+    settings: DiscSettings
+    points: FloatArray
+    room: Any  # Arrays from Python, a Room inside
+    by_core: bool
+
+
 @scalar
 def put_state(state: FloatArray, lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int) -> None:
     length, rate = memory.length, memory.rate
@@ -333,3 +285,14 @@ def put_state(state: FloatArray, lanes: DiscLanes, moment: Moment, memory: DiscM
     state[3] = (there.ux - omega * there.y) * length * rate
     state[4] = (there.uy + omega * there.x) * length * rate
     state[5] = (omega + curling * there.r) * rate
+
+
+@scalar
+def take_in(memory: DiscMemory, law: DiscLaw, setup: Setup) -> None:
+    """Write the law of a trajectory to the room of the core."""
+    room = setup.room
+    for i in range(SCALARS):
+        room.parameters[i] = memory.law[i]
+    for i in range(len(room.around)):
+        is_length = i % WIDTH < 2 or i % WIDTH > 4
+        room.around[i] = setup.points[i] * (law.leverage if is_length else 1.0)

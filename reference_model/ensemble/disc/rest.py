@@ -1,163 +1,199 @@
-"""End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
+"""Steps of a disc by the core: rest, release, and stiff slip.
 
-A disc on a ring sticks like a pin with the friction that the shaft's moment leaves (eq. 7). Functions of type bool
-return whether the trajectory ends.
+A disc rests permanently if it sticks for a whole turn of the master disc, because the pull then repeats.
 """
 
 import math
 
-from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.core.laws import SPENT_SHARE, DiscLaw, creeps_by_turns, sticking_radius
+from reference_model.core.memory import CREEPS, PATIENCE, PHASE, SHORT, STEP, STICKS
+from reference_model.core.steps.explicit import SIZE
+from reference_model.ensemble.core.by_core import (
+    MANY,
+    go_on,
+    is_done,
+    next_span,
+    patience_of,
+    prepare,
+    released,
+    rests,
+    sample,
+    see_samples,
+    slip_of,
+    way_of,
+)
+from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.lanes import IS_DUE, STIFF
+from reference_model.ensemble.core.laws import DiscLaw, PinLaw, creeps_by_turns, sticking_radius
 from reference_model.ensemble.core.records import fill, put
-from reference_model.ensemble.core.recurrence import Measures, compared
+from reference_model.ensemble.core.recurrence import NO_WINDOW, Measures, compared
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.ensemble.disc.events import found
 from reference_model.ensemble.disc.lanes import (
     AT_END,
-    LEAST_SLIP,
+    FIRST_STEP,
+    MOST_STEPS,
     NEAR_REST,
     OF_PEAK,
     UNWATCHED,
     DiscLanes,
     DiscMemory,
-    DiscSettings,
-    begin_slip,
-    comes_to_rest,
-    put_slipping,
+    DiscState,
+    RatesInRoom,
+    Setup,
+    flags_of,
     rates_at,
-    slip_left,
     state_at,
+    take_in,
 )
-from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_rates, stuck_for
-from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
+from reference_model.ensemble.end_states import STICK_SLIP, STUCK, UNDECIDED
 
-LINGERS = 0.01
-"""Shortest scaled time to rest of slow slip of a creeping disc or point."""
+TURNS = 1.1
+"""Number of turns of the master disc after which a stick phase is permanent."""
 
-SOON = 3e-4
-"""Longest scaled time to rest of a point whose stop can be predicted."""
+GOES_ON, ENDS, FAILS = 0, 1, 2
 
-
-@scalar
-def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Bring a disc on a ring to rest if the end of slip is known."""
-    if not slip_left(lanes, lane)[0] < NEAR_REST * law.friction:
-        return False
-    if _creeps_out(lanes, memory, lane, law, settings):
-        return True
-    return comes_to_rest(lanes, lane, law) and ring_rests(lanes, memory, lane, law, settings)
+HARDENING, STOP, HOLD = 3, 5, 7
+"""Indices into the parameters of :class:`reference_model.core.forces.law.Law`."""
 
 
-@scalar
-def _creeps_out(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
+@written_out
+def step_by_core_with(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setup: Setup, rates: RatesInRoom
 ) -> bool:
-    """End the trajectory if the disc slips ever more slowly forever.
-
-    This requires a pull that only rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
-    """
-    s, left = slip_left(lanes, lane)
-    steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
-    least = max(SPENT_SHARE * lanes.tolerance[lane], LEAST_SLIP)
-    spent = s * max(left, 1.0) < least or s <= LEAST_SLIP
-    if not (steady and LINGERS < left < math.inf and spent):
-        return False
-    x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
-    z = complex(x, y)
-    if memory.end == UNDECIDED:
-        memory.end = STUCK
-        fill(memory.found, Measures(abs(z), abs(z), 0.0))
-    if not settings.early:
-        delay = lanes.duration[lane] - t
-        turn = law.disc_speed * delay
-        z *= complex(math.cos(turn), math.sin(turn))
-        put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle + turn, t + delay, way))
-    return True
-
-
-@scalar
-def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Follow a disc on a ring from rest until it slips."""
-    ended = _held(lanes, memory, lane, law, settings)
-    if not ended:
-        put_slipping(lanes, lane, law, ring_rates)
-    return ended
-
-
-@scalar
-def points_slow(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
-) -> bool:
-    s, left = slip_left(lanes, lane)
-    slow = s < NEAR_REST * law.friction
-    if slow and _creeps_out(lanes, memory, lane, law, settings):
+    """Replace the trial step by one of the core; return whether the trajectory ends."""
+    room, before = setup.room, state_at(lanes.now, lane)
+    take_in(memory, law, setup)
+    end = lanes.duration[lane]
+    until = min(before.time + memory.span, end)
+    if lanes.due[lane] > before.time:
+        until = min(until, lanes.due[lane])
+    short, enough = memory.short, NEAR_REST * law.friction
+    if int(lanes.flag[lane]) & STIFF and not setup.by_core:
+        short, enough = math.inf, law.friction
+    y = (before.x, before.y, before.ux, before.uy, before.r, before.angle, before.time)
+    pace = lanes.now.rates.time[lane]
+    prepare(room, y, lanes.now.step[lane], pace, short, memory.patience, until - before.time)
+    way, status, rested, done = before.way, GOES_ON, False, False
+    while not done and status == GOES_ON and (room.state[6] < until or (rests(room) and room.state[6] < end)):
+        lanes.steps[lane] += 1.0
+        if rests(room):
+            rested = True
+            way += way_of(room, y)
+            status = _leave_rest(lanes, memory, lane, law, setup, way)
+            y = _unknowns(setup)
+            way += 0.5 * slip_of(room) * (y[6] - memory.since)
+            sample(room, y[6], until - y[6])
+        else:
+            sound = go_on(room, lanes.tolerance[lane], until)
+            status = _creeps(memory, setup) if sound else FAILS
+            if room.memory[CREEPS] > 0.0:
+                until = end
+        if lanes.steps[lane] > MOST_STEPS:
+            status = FAILS
+        done = is_done(room, enough, memory.patience) and not setup.by_core
+    new = DiscState(*_unknowns(setup), way + way_of(room, y))
+    put(lanes.trial.state, lane, new)
+    if status == FAILS:
+        memory.end = UNDECIDED
+    if status != GOES_ON or rests(room):
         return True
-    goes_on = not slow or (left > LINGERS and s > LEAST_SLIP)
-    if goes_on and not _point_rests(lanes, lane, law):
-        return False
-    return points_rest(lanes, memory, lane, law, settings)
+    k = rates(new[:6], law, room)
+    put(lanes.trial.rates, lane, k)
+    lanes.trial.step[lane], lanes.usual[lane] = room.memory[STEP], 0.0
+    memory.patience, memory.short = room.memory[PATIENCE], room.memory[SHORT]
+    lanes.short[lane] = patience_of(room) if done else MANY
+    here, there = complex(before.x, before.y), complex(new.x, new.y)
+    memory.span = next_span(memory.span, here, there, not done and not rested)
+    due = new.time >= min(lanes.due[lane], end - AT_END)
+    flag = IS_DUE if due else 0.0
+    if not rested:
+        flag = flags_of(
+            before, rates_at(lanes.now, lane), new, DiscState(*k), 0.0, due, False, lanes.watch[lane]
+        )
+    lanes.flag[lane] = flag
+    return False
 
 
 @inlined
-def points_rest(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
-) -> bool:
-    memory.end = HANDED_OVER
-    return True
+def _unknowns(setup: Setup) -> Tuple:
+    """Return x, y, the slip of the centre, r, the angle and the time."""
+    state = setup.room.state
+    return state[0], state[1], state[SIZE], state[SIZE + 1], state[4], state[5], state[6]
 
 
 @scalar
-def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
-    z, end = complex(x, y), lanes.duration[lane]
-    if t >= end - AT_END:
-        return True
+def _creeps(memory: DiscMemory, setup: Setup) -> int:
+    """Return whether the trajectory ends because slip decays forever."""
+    room = setup.room
+    if room.memory[CREEPS] > 0.0 and memory.end == UNDECIDED:
+        memory.end, radius = STUCK, math.hypot(room.state[0], room.state[1])
+        fill(memory.found, Measures(radius, radius, 0.0))
+    return ENDS if room.memory[CREEPS] > 0.0 and setup.settings.early else GOES_ON
+
+
+@scalar
+def _leave_rest(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setup: Setup, way: float
+) -> int:
+    """Follow the disc from rest through its release, or to the end of the trajectory."""
+    room, end, tolerance = setup.room, lanes.duration[lane], lanes.tolerance[lane]
+    y = _unknowns(setup)
+    turn = 2.0 * math.pi / abs(law.disc_speed) if law.disc_speed != 0.0 else 1.0
+    memory.since = y[6]
+    if not go_on(room, tolerance, y[6] + TURNS * turn):
+        return FAILS
+    stuck = room.memory[PHASE] == STICKS
+    if stuck:
+        memory.end, radius = STUCK, math.hypot(y[0], y[1])
+        fill(memory.found, Measures(radius, radius, 0.0))
+    i, status = released(room), GOES_ON
+    if i >= 0 and room.phases[i, 1] < end:
+        memory.since = room.phases[i, 1]
+        radius = math.hypot(room.phases[i, 2], room.phases[i, 3])
+        status = _decides(lanes, memory, lane, law, setup, way, radius)
+    if i >= 0 and status == GOES_ON and memory.window.kind != NO_WINDOW:
+        last = min(room.state[6], end)
+        prepare(room, y, FIRST_STEP, 1.0, 0.0, 0.0, 0.0)  # again, with samples after the release
+        sample(room, memory.since, last - memory.since)
+        go_on(room, tolerance, last)
+        see_samples(room, memory.window)
+    elif stuck or room.state[6] > end:  # again, up to the end
+        prepare(room, y, FIRST_STEP, 1.0, 0.0, 0.0, end - y[6])
+        if not (stuck and setup.settings.early):
+            go_on(room, tolerance, end)
+        status = ENDS
+    return status
+
+
+@scalar
+def _decides(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setup: Setup, way: float, radius: float
+) -> int:  # fmt: skip
+    """Judge the radius of a release; return whether the trajectory ends."""
     memory.checks.count = memory.turns.count = 0
-    friction = held_friction(law)
-    held = stuck_for(z, friction, law)
-    if held == math.inf:
-        memory.end = STUCK
-        fill(memory.found, Measures(abs(z), abs(z), 0.0))
-        if settings.early:
-            return True
-    delay = min(held, end - t)
-    turn = law.disc_speed * delay
-    z *= complex(math.cos(turn), math.sin(turn))
-    t, angle = t + delay, angle + turn
-    put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle, t, way))
-    if t >= end - AT_END:
-        return True
-    if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
-        # The centre slips no farther than an equally held pin, and creeps inward where such a pin does.
-        centre, last = centre_of(law, friction), memory.peaks.values[0]
-        if memory.peaks.count > 0 and creeps_by_turns(abs(z), last, centre):
-            memory.end, radius = STUCK, sticking_radius(centre)
-            fill(memory.found, Measures(radius, radius, 0.0))
-            if settings.early:
-                return True
-        elif compared(memory.peaks, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z)) and found(
-            lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, settings
-        ):
-            return True
-    return not begin_slip(lanes, lane, z, angle, t, law)
+    if memory.end != UNDECIDED or lanes.watch[lane] == UNWATCHED:
+        return GOES_ON
+    if memory.peaks.count > 0 and _creeps_by_turns(memory, law, radius):
+        memory.end, largest = STUCK, sticking_radius(_held_pin(memory, law))
+        fill(memory.found, Measures(largest, largest, 0.0))
+        return ENDS if setup.settings.early else GOES_ON
+    ends = compared(memory.peaks, (radius, 0.0, 0.0, 0.0, 0.0), radius) and found(
+        lanes, memory, lane, OF_PEAK, STICK_SLIP, memory.since, way, radius, law, setup.settings
+    )
+    return ENDS if ends else GOES_ON
+
+
+@inlined
+def _held_pin(memory: DiscMemory, law: DiscLaw) -> PinLaw:
+    """Return the pin that sticks where the disc does."""
+    return PinLaw(law.stiffness, law.damping, memory.law[HOLD], law.disc_speed, law.offset, 0.0, 0.0)
 
 
 @scalar
-def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Return whether a contact point slips slowly, decelerates, and could be held at rest."""
-    _, _, ux, uy, r, angle, _, _ = state_at(lanes.trial, lane)
-    k = rates_at(lanes.trial, lane)
-    most = law.friction / (len(law.around) // 2)
-    eta, spin = law.leverage, law.disc_speed + law.curling * r
-    for j in range(0, len(law.around), 2):
-        arm = complex(math.cos(angle), math.sin(angle)) * complex(law.around[j], law.around[j + 1])
-        v = complex(ux, uy) + 1j * eta * r * arm
-        if 0.0 < abs(v) < SOON * most:
-            rate = (1.0 / k.time) * complex(k.ux, k.uy) + 1j * eta * arm * (k.r / k.time + 1j * r * spin)
-            # Acceleration without its own friction, and the friction that would hold it, as in
-            # reference_model.core.forces.pivot.
-            free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
-            holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free
-            falling = -(v.conjugate() * rate).real / abs(v)
-            if abs(v) < LINGERS * falling and abs(holding) < most:
-                return True
-    return False
+def _creeps_by_turns(memory: DiscMemory, law: DiscLaw, radius: float) -> bool:
+    """Return whether the disc creeps inward forever: the centre slips no farther than an equally held pin.
+
+    This is known for linear supports and contacts that are the same in all directions.
+    """
+    known = memory.law[HARDENING] == 0.0 and memory.law[STOP] == 0.0 and len(law.around) == 0
+    return known and creeps_by_turns(radius, memory.peaks.values[0], _held_pin(memory, law))

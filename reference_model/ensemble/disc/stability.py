@@ -7,9 +7,10 @@ the distance.
 
 import numpy as np
 
+from reference_model.core.forces.law import Law
+from reference_model.core.forces.rates import growth
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import scalar
-from reference_model.ensemble.core.laws import DiscLaw, pull, ring_friction
 from reference_model.ensemble.core.stepping.linear import length_of, powers_vanish, solve, zeros
 from reference_model.systems import FloatArray
 
@@ -20,8 +21,13 @@ DIMENSION = 5
 
 
 @scalar
-def attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    """Return whether an equilibrium or a circle of a ring attracts and lies within ``near`` of z, v and r."""
+def attracts(z: complex, v: complex, r: float, law: Law, circle: bool, near: float) -> bool:
+    """Return whether an equilibrium or a circle attracts and lies within ``near`` of z, v and r.
+
+    Of a disc on points this is known only without friction.
+    """
+    if len(law.around) > 0:
+        return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0
     if circle:
         radius = max(abs(z), LEAST)
         along = (1.0 / radius) * v * z.conjugate()
@@ -65,16 +71,15 @@ def _square() -> FloatArray:
 
 
 @scalar
-def _rates(y: FloatArray, law: DiscLaw, circle: bool) -> tuple[float, float, float, float, float]:
+def _rates(y: FloatArray, law: Law, circle: bool) -> tuple[float, float, float, float, float]:
     """Return the rates of x, y, vx, vy, r; for a circle, of ρ, v along and across the radius, r, and 0."""
     if circle:
         z, v, r = complex(y[0]), complex(y[1], y[2]), y[3]
     else:
         z, v, r = complex(y[0], y[1]), complex(y[2], y[3]), y[4]
-    u = v - 1j * law.disc_speed * z
-    fx, fy, fr, _ = ring_friction(u.real, u.imag, r, 0.0, law)
-    a = pull(z, u, law) + law.friction * complex(fx, fy) + 1j * law.disc_speed * v
-    spin_up = -law.shaft_rate * (r + law.lag) + law.friction * fr
+    u = v - 1j * law.omega * z
+    ax, ay, spin_up, _, _, _ = growth(z.real, z.imag, u.real, u.imag, r, 0.0, law)
+    a = complex(ax, ay) + 1j * law.omega * v
     if circle:
         return y[1], a.real + y[2] * y[2] / y[0], a.imag - y[1] * y[2] / y[0], spin_up, -y[4]
     return v.real, v.imag, a.real, a.imag, spin_up

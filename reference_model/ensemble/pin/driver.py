@@ -1,5 +1,6 @@
 """Ensembles of pins."""
 
+from reference_model.ensemble.core.by_core import core_for_kernels
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Results
 from reference_model.ensemble.pin.kernel import run_pins
@@ -15,8 +16,10 @@ def simulate_pins(
     regions = None if varied else trapping_regions(pin)
     results, local = Results.empty(task.size, pin.state_size), tolerance_of_steps(tolerance)
 
+    core = core_for_kernels()
+
     def run(stoppable: Task, first: int, last: int) -> None:
-        run_pins(stoppable, settings_of(local, early_end, regions=regions), results, first, last)
+        run_pins(stoppable, settings_of(local, early_end, regions=regions), core, results, first, last)
 
     in_chunks(run, task, threads)
     return results

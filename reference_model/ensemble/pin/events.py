@@ -5,13 +5,21 @@ Functions that return a bool return whether the trajectory ends, if not stated o
 
 import math
 
-import numpy as np
-
+from reference_model.core.memory import PATIENCE, STEP
+from reference_model.ensemble.core.by_core import (
+    MANY,
+    go_on,
+    is_done,
+    next_span,
+    patience_of,
+    prepare,
+    slip_of,
+    way_of,
+)
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import EXTREME, IS_DUE, LOST, REST, RIGHTMOST, STIFF
 from reference_model.ensemble.core.laws import (
     SPENT_SHARE,
-    DiscLaw,
     PinLaw,
     creeps_by_turns,
     pull,
@@ -26,14 +34,6 @@ from reference_model.ensemble.core.stepping.dense_output import (
     way_along,
     where_radius_turns,
     where_rightmost,
-)
-from reference_model.ensemble.core.stepping.implicit import (
-    WORTH,
-    collocate_pin,
-    failed,
-    first_try,
-    patience,
-    stride_with,
 )
 from reference_model.ensemble.core.stepping.linear import quadratic_form
 from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
@@ -83,8 +83,8 @@ AFTER_START = 1e-3
 @written_out
 def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> bool:
     law = law_of(lanes, lane)
-    if int(lanes.flag[lane]) & STIFF:
-        stride(lanes, memory, lane, law)
+    if int(lanes.flag[lane]) & STIFF and step_by_core(lanes, memory, lane, law, settings):
+        return True
     flag = int(lanes.flag[lane])
     later = lanes.trial.state.time[lane]
     if flag & LOST:
@@ -326,40 +326,43 @@ def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
         centres(lanes, memory, lane, law)
 
 
-# --- Implicit steps in place of many short ones
-
-
-@written_out
-def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Replace the trial step by an implicit step if that goes much further."""
-    now, trial = lanes.now, lanes.trial
-    t, share = now.state.time[lane], now.rates.time[lane]
-    short = now.step[lane] * share
-    z, w = position_at(now, lane), slip_at(now, lane)
-    left = memory.duration - t
-    least = min(WORTH * short, left)
-    span = first_try(memory.span, least, left)
-    start, guess = np.array((w.real, w.imag)), np.array((w.real, w.imag))
-    if law.friction * span > abs(w):  # slaved to the direction of the pull
-        a = pull(z, w, law)
-        guess[0], guess[1] = abs(w) / abs(a) * a.real, abs(w) / abs(a) * a.imag
-    z, wx, wy, _, _, took, way, following = stride_with(
-        z, 0.0, start, guess, span, least, lanes.tolerance[lane],
-        DiscLaw(
-            (), law.stiffness, law.damping, law.friction, law.disc_speed, law.offset, law.stretching, law.free,
-            0.0, 0.0, 0.0, 0.0,
-        ),
-        collocate_pin,
+@scalar
+def step_by_core(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, settings: Settings) -> bool:
+    """Replace the trial step of stiff slip by one of the core, up to rest; return whether the trajectory ends."""
+    now, trial, room = lanes.now, lanes.trial, settings.room
+    t, pace, z, w = now.state.time[lane], now.rates.time[lane], position_at(now, lane), slip_at(now, lane)
+    until = min(t + memory.span, memory.duration)
+    if lanes.due[lane] > t:
+        until = min(until, lanes.due[lane])
+    g = law.friction
+    numbers = (
+        law.damping, law.stiffness, law.offset, 0.0, 0.0, 0.0, g, g, law.disc_speed, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+        law.stretching,
     )  # fmt: skip
-    memory.span = following if took > 0.0 else failed(memory.span)
-    if took == 0.0:
-        lanes.short[lane] = -patience(memory.span)
-        return
-    put_motion(trial, lane, z, complex(wx, wy), law)
-    trial.state.time[lane] = t + took if took < left else memory.duration
-    trial.step[lane] = now.step[lane]  # the trial step gives no estimate
-    trial.state.way[lane] = now.state.way[lane] + way
+    for i in range(len(numbers)):
+        room.parameters[i] = numbers[i]
+    start = (z.real, z.imag, w.real, w.imag, 0.0, 0.0, t)
+    prepare(room, start, now.step[lane], pace, math.inf, memory.patience, until - t)
+    sound, done, slow = True, False, False
+    while sound and not done and not slow and room.state[6] < until:
+        lanes.steps[lane] += 1.0
+        sound = go_on(room, lanes.tolerance[lane], until)
+        done, slow = is_done(room, g, memory.patience), slip_of(room) < lanes.slow[lane]
+    there, slip = complex(room.state[0], room.state[1]), complex(room.state[2], room.state[3])
+    trial.state.time[lane] = room.state[6]
+    trial.state.way[lane] = now.state.way[lane] + way_of(room, start)
+    if not sound or lanes.steps[lane] > lanes.most_steps[lane]:
+        memory.end = UNDECIDED
+        put_position(trial, lane, there, slip)
+        return True
+    if slip == 0j:
+        return rest(lanes, memory, lane, there, room.state[6], law, settings, False)
+    put_motion(trial, lane, there, slip, law)
+    trial.step[lane], memory.patience = room.memory[STEP], room.memory[PATIENCE]
+    lanes.short[lane] = patience_of(room) if done else MANY
+    memory.span = next_span(memory.span, z, there, not done)
     lanes.flag[lane] = flags_of(
         state_at(now, lane), rates_at(now, lane), state_at(trial, lane), rates_at(trial, lane),
         lanes.due[lane], lanes.slow[lane], lanes.watch[lane],
     )  # fmt: skip
+    return False

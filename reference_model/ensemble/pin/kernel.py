@@ -1,11 +1,13 @@
 """The kernel of pins."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
+from reference_model.ensemble.core.by_core import MANY, USUAL_SPAN, core_for_kernels, room_with
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
-from reference_model.ensemble.core.lanes import MANY, row_of, run, store_end
+from reference_model.ensemble.core.lanes import row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, PinLaw, pull, units
 from reference_model.ensemble.core.records import LANES, clear, layout, put
 from reference_model.ensemble.end_states import SELF_CENTRED, Results
@@ -56,6 +58,7 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
 
     clear(memory)
     memory.number, memory.length, memory.rate, memory.duration = number, length, rate, duration * rate
+    memory.span = USUAL_SPAN
     friction = g / (speed * rate)
     law = PinLaw(
         k2 / rate**2,
@@ -120,8 +123,14 @@ def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> No
 
 
 @called_from_python
-def run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
-    _run_pins(task, settings, results, first, last)
+def run_pins(
+    task: Task, settings: Settings, core: Callable[..., None], results: Results, first: int, last: int
+) -> None:
+    room = room_with(core, settings.room)
+    inside = Settings(
+        settings.tolerance, settings.early, settings.once, settings.regions, settings.series, room
+    )
+    _run_pins(task, inside, results, first, last)
 
 
 @inlined
@@ -135,5 +144,5 @@ def _run_pins(task: Task, settings: Settings, results: Results, first: int, last
 
 def results_of(task: Task, settings: Settings) -> Results:
     results = Results.empty(task.size, PinOnDisc.state_size)
-    run_pins(task, settings, results, 0, task.size)
+    run_pins(task, settings, core_for_kernels(), results, 0, task.size)
     return results

@@ -5,12 +5,12 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from reference_model.ensemble.core.by_core import MANY, arrays_for
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
     EXTREME,
     IS_DUE,
     LOST,
-    MANY,
     REST,
     RIGHTMOST,
     SMALLEST_STEP,
@@ -263,6 +263,7 @@ class Settings(NamedTuple):
     once: bool
     regions: TrappingRegions
     series: ComplexArray
+    room: Any  # Arrays from Python, a Room inside
 
 
 def no_regions() -> NDArray[Any]:
@@ -278,7 +279,7 @@ def settings_of(
     # The kernel is compiled for writable arrays only.
     known = no_regions() if regions is None else regions.copy()
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
-    return Settings(tolerance, early, once, known[0], series)
+    return Settings(tolerance, early, once, known[0], series, arrays_for(0))
 
 
 @inlined

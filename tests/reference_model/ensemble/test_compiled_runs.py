@@ -12,7 +12,6 @@ from random_systems import SYSTEMS, TIMES, RandomMotion
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9, FIG11
 from reference_model import DiscOnDisc, PinOnDisc, simulate
 from reference_model.ensemble import simulate_ensemble
-from reference_model.ensemble.disc import driver
 
 SECOND = list(FIG5_STARTS.values())[1]
 """A start with nine stick phases."""
@@ -136,26 +135,14 @@ def test_creeping_ring_at_the_tightest_tolerance_comes_to_rest():
     assert abs(place[2] - place[1]) < 1e-11  # 2e-14 m/s for about 8 s
 
 
-def test_ensemble_of_points_uses_single_runs_only_until_it_slips(monkeypatch):
-    disc = DiscOnDisc(
-        mass=1.0, polar_inertia=0.542, stiffness=1.0, damping=2.66, friction_force=8.11, disc_speed=-0.888,
-        offset=1.48, contact_radius=2.23, shaft_damping=1.26, shaft_speed=-0.381, contact_points=6,
-    )  # fmt: skip
-    parts = []
-
-    def watched(*arguments, **options):
-        parts.append(simulate(*arguments, **options))
-        return parts[-1]
-
-    monkeypatch.setattr(driver, "simulate", watched)
-    start = stuck_state(disc, -4.0, 0.0)
-    end = simulate_ensemble(disc, start, duration=40.0, early_end=False).states[0]
-    found = simulate(disc, start, [0.0, 40.0], compiled=True)
-    slips = [phase.end - phase.start for phase in found.phases[:-1] if phase.kind == "slip"]
-    by_reference = [p.end - p.start for part in parts for p in part.phases if p.kind == "slip"]
-    assert len(slips) > 5
-    assert sum(by_reference) < 0.4 * sum(slips)
-    assert np.max(np.abs(end - found.at_end)) < 1e-8  # of 4 m and 3.5 m/s
+@pytest.mark.parametrize("seed", range(SYSTEMS))
+def test_random_systems_move_in_an_ensemble_as_alone(seed):
+    """Lanes know linear supports, and the core all; a seed has each kind of contact, support and course."""
+    random = RandomMotion.of(seed)
+    found = simulate_ensemble(random.system, random.start, duration=TIMES[-1], early_end=False)
+    alone = simulate(random.system, random.start, [0.0, TIMES[-1]], tolerance=1e-11, compiled=True)
+    assert found.time[0] == TIMES[-1]
+    assert np.abs(found.states[0] - alone.at_end).max() < 1e-9 * MOST_TOLERANCES
 
 
 @pytest.mark.parametrize("body", ["pin", "ring", "three points"])

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -15,8 +13,8 @@ START = [0.1, 0.0, 0.0, 0.0]
     ("system", "states", "options", "message"),
     [
         ("pin", START, {}, r"system = 'pin': it must be a PinOnDisc or a DiscOnDisc"),
-        (replace(FIG5, hardening=2.0), START, {}, r"hardening = 2: ensembles need a linear support"),
-        (replace(FIG9, contact_points=25), [0.1] * 6, {}, r"contact_points = 25: ensembles support up to 24"),
+        (FIG9, [0.1] * 6, {"contact": ThreeTermRing(0.1)}, r"ensembles know a Ring, Points, and an Annulus"),
+        (FIG5, START, {"contact": Ring(0.1)}, r"a pin has point contact"),
         (FIG5, [0.1, 0.0], {}, r"initial_states has shape \(1, 2\): PinOnDisc takes 4 numbers"),
         (FIG5, np.zeros((0, 4)), {}, r"initial_states has shape \(0, 4\)"),
         (FIG5, [START, [0.1, 0.0, np.nan, 0.0]], {}, r"initial_states\[1, 2\] = nan: it must be finite"),
@@ -25,7 +23,7 @@ START = [0.1, 0.0, 0.0, 0.0]
         (FIG5, START, {"tolerance": 1.0}, r"tolerance = 1: it must lie between"),
         (FIG5, START, {"threads": 0}, r"threads = 0: it must be a whole number >= 1 and <= 1024"),
         (FIG5, START, {"parameters": {"ofset": [0.1]}}, r"'ofset' cannot vary .* choose from mass, stiffness"),
-        (FIG5, START, {"parameters": {"hardening": [0.1]}}, r"'hardening' cannot vary between trajectories"),
+        (FIG5, START, {"parameters": {"hardening": [-0.1]}}, r"hardening = -0.1 N/m³: it must be >= 0"),
         (FIG5, START, {"parameters": {"offset": 0.1}}, r"offset has shape \(\): it must be a list"),
         (FIG5, START, {"parameters": {"damping": [0.1, -0.1]}}, r"damping = -0.1 N s/m: it must be >= 0"),
         (FIG5, START, {"parameters": {"mass": [1.0, np.inf]}}, r"mass\[1\] = inf: it must be finite"),
