@@ -108,8 +108,8 @@ def follow(
 
     The state contains the unknowns, and as a result the slip of the centre. The motion does not depend on
     ``most_work``. ``times`` are the requested times, (n,), ``out`` the unknowns without the time, (n, 6), and
-    ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at time 0, and the errors
-    of its steps are of the size of ``tolerance``.
+    ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at time 0, with
+    errors of its steps of ``tolerance``.
     """
     law = seen_from(int(memory[POINT]) - 1, memory[SENSE], law)
     y = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])

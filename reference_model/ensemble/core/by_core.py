@@ -43,11 +43,8 @@ ROWS = 16
 USUAL_SPAN = 0.4
 """Usual scaled duration of a step of a lane, within which polynomials describe the motion."""
 
-STEADY = 0.1
+STEADY = 0.2
 """Share of its distance from the axis that the body moves in a step while longer ones suffice."""
-
-MANY = 40.0
-"""Number of successive short steps of a lane that calls for the core."""
 
 LEAST_STEP = 0.01
 """Explicit step in stretched time below which the core goes on."""
@@ -187,9 +184,9 @@ def next_span(span: float, before: complex, after: complex, smooth: bool) -> flo
 
 
 @inlined
-def patience_of(room: Room) -> float:
-    """Return the number of short steps, less than MANY, that a lane may count before it asks the core again."""
-    count: float = MANY * (1.0 - room.memory[PATIENCE] / FEW)
+def count_after(room: Room, many: float) -> float:
+    """Return the number of short steps from which a lane counts on, 0 or less; at ``many`` it asks the core again."""
+    count: float = many * (1.0 - room.memory[PATIENCE] / FEW)
     return count
 
 

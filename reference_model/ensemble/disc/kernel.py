@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from reference_model.core.forces.rates import rates as rates_of
-from reference_model.ensemble.core.by_core import MANY, USUAL_SPAN, Room, law_in, power, room_with
+from reference_model.ensemble.core.by_core import USUAL_SPAN, Room, law_in, power, room_with
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import STIFF, row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, DiscLaw, units
@@ -16,6 +16,7 @@ from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.ensemble.disc.events import handle_flag_with
 from reference_model.ensemble.disc.lanes import (
     FIRST_STEP,
+    MANY,
     RADII,
     TURNS,
     DiscLanes,

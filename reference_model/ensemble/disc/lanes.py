@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 from numpy.typing import NDArray
 
 from reference_model.core.forces.law import SCALARS, WIDTH
-from reference_model.ensemble.core.by_core import MANY, Room
+from reference_model.ensemble.core.by_core import Room
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
@@ -72,8 +72,8 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
 """Degrees of watching: no flags; flags where x is largest; also where the radius is extreme; only the latter."""
 
-SHORT_STEP = 0.1
-"""Scaled duration of a short step; explicit steps of discs cost more than those of pins."""
+SHORT_STEP, MANY = 0.1, 40.0
+"""As for pins; explicit steps of discs cost more."""
 
 MOST_STEPS = 5_000_000.0
 FIRST_STEP = 0.1

@@ -8,11 +8,10 @@ import math
 from reference_model.core.memory import CREEPS, PATIENCE, PHASE, SHORT, STEP, STICKS
 from reference_model.core.steps.explicit import SIZE
 from reference_model.ensemble.core.by_core import (
-    MANY,
+    count_after,
     go_on,
     is_done,
     next_span,
-    patience_of,
     prepare,
     released,
     rests,
@@ -31,6 +30,7 @@ from reference_model.ensemble.disc.events import found
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     FIRST_STEP,
+    MANY,
     MOST_STEPS,
     NEAR_REST,
     OF_PEAK,
@@ -101,7 +101,7 @@ def step_by_core_with(
     put(lanes.trial.rates, lane, k)
     lanes.trial.step[lane], lanes.usual[lane] = room.memory[STEP], 0.0
     memory.patience, memory.short = room.memory[PATIENCE], room.memory[SHORT]
-    lanes.short[lane] = patience_of(room) if done else MANY
+    lanes.short[lane] = count_after(room, MANY) if done else MANY
     here, there = complex(before.x, before.y), complex(new.x, new.y)
     memory.span = next_span(memory.span, here, there, not done and not rested)
     due = new.time >= min(lanes.due[lane], end - AT_END)

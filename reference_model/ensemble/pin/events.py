@@ -7,11 +7,10 @@ import math
 
 from reference_model.core.memory import PATIENCE, STEP
 from reference_model.ensemble.core.by_core import (
-    MANY,
+    count_after,
     go_on,
     is_done,
     next_span,
-    patience_of,
     prepare,
     slip_of,
     way_of,
@@ -40,6 +39,7 @@ from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK,
 from reference_model.ensemble.pin.end_states import depth, orbit_attracts
 from reference_model.ensemble.pin.lanes import (
     LANDING,
+    MANY,
     OF_RELEASE,
     OF_TURN,
     RADII,
@@ -359,7 +359,7 @@ def step_by_core(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, set
         return rest(lanes, memory, lane, there, room.state[6], law, settings, False)
     put_motion(trial, lane, there, slip, law)
     trial.step[lane], memory.patience = room.memory[STEP], room.memory[PATIENCE]
-    lanes.short[lane] = patience_of(room) if done else MANY
+    lanes.short[lane] = count_after(room, MANY) if done else MANY
     memory.span = next_span(memory.span, z, there, not done)
     lanes.flag[lane] = flags_of(
         state_at(now, lane), rates_at(now, lane), state_at(trial, lane), rates_at(trial, lane),

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from reference_model.ensemble.core.by_core import MANY, USUAL_SPAN, core_for_kernels, room_with
+from reference_model.ensemble.core.by_core import USUAL_SPAN, core_for_kernels, room_with
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, PinLaw, pull, units
@@ -15,6 +15,7 @@ from reference_model.ensemble.pin.end_states import FORM_SIZE, equilibrium_regio
 from reference_model.ensemble.pin.events import handle_flag, rest
 from reference_model.ensemble.pin.lanes import (
     LANDING,
+    MANY,
     STEPS_A_TIME,
     STEPS_TO_SPARE,
     TURNS,

@@ -5,7 +5,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.core.by_core import MANY, arrays_for
+from reference_model.ensemble.core.by_core import arrays_for
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
     EXTREME,
@@ -63,10 +63,10 @@ UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
 """Largest number of steps of a motion before it is undecided: a constant plus a number per unit of time."""
 
-SHORT_STEP = 5e-3
-"""Scaled duration of a short step.
+SHORT_STEP, MANY = 5e-3, 160.0
+"""Scaled duration of a short step, and number of successive ones that calls for the core.
 
-An implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
+A step of the core costs as much as a thousand steps in shared lanes.
 """
 
 LANDING = 1e-9
