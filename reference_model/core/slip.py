@@ -88,7 +88,7 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
 
 @part
 def fall_after(y: Unknowns, s: float, left: float, law: Law) -> float:
-    """Return the rate at which slip falls after ``left``, in which the slip speed ``s`` of the centre falls to 0."""
+    """Return how fast the slip of the centre falls when it ends, ``left`` after it had the speed ``s``."""
     share = LEAST_SLIP / s
     end = carried(y, left, 0.5 * left, share, law)
     a = growth(end[0], end[1], end[2], end[3], end[4], end[5], law)

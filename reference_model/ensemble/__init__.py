@@ -1,9 +1,9 @@
 """Compiled simulation of the end states of many trajectories.
 
 - ``simulate``: :func:`simulate_ensemble`; ``end_states``: its results;
-- ``core``: lanes of trajectories in vector registers, forces, explicit and implicit steps;
-- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``), and ``kernel`` with
-  ``driver``, which combine them.
+- ``core``: lanes of trajectories in vector registers, forces, explicit steps, and steps by the core;
+- ``pin``, ``disc``: slip and rest (``slip``, ``rest``), end states (``events``, ``trapping``), and ``kernel`` with
+  ``driver``, which combine them. The core alone simulates nonlinear supports and laws given as ``contact``.
 """
 
 from reference_model.ensemble.end_states import EndState, Ensemble

@@ -21,6 +21,7 @@ with suppress(ImportError):  # on Windows
 LONG = 1.0
 """Time in s before a line on standard error announces the compilation; loading takes less."""
 
+typeof: Any = numba.typeof  # not typed
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 
 config.DISABLE_JIT = 0  # despite the user's setting, because plain Python cannot run the compiled functions
@@ -57,7 +58,7 @@ def _type_of(argument: Any) -> Any:
     """Return numba's type, of a compiled function by its signature, so that it is called and not compiled again."""
     if hasattr(argument, "nopython_signatures"):
         return numba.types.FunctionType(argument.nopython_signatures[0])
-    return numba.typeof(argument)
+    return typeof(argument)
 
 
 def compiled_for(

@@ -38,7 +38,7 @@ SAMPLES = 8
 """Number of samples of slip in a step, for the distance."""
 
 ROWS = 16
-"""Room for phases, of which a call begins at most three."""
+"""Room for phases; a call begins at most three."""
 
 USUAL_SPAN = 0.4
 """Usual scaled duration of a step of a lane, within which polynomials describe the motion."""
@@ -185,7 +185,7 @@ def next_span(span: float, before: complex, after: complex, smooth: bool) -> flo
 
 @inlined
 def count_after(room: Room, many: float) -> float:
-    """Return the number of short steps from which a lane counts on, 0 or less; at ``many`` it asks the core again."""
+    """Return where a lane begins to count short steps, so that at ``many`` it asks the core again."""
     count: float = many * (1.0 - room.memory[PATIENCE] / FEW)
     return count
 
@@ -210,7 +210,8 @@ def way_of(room: Room, start: Tuple) -> float:
         way += 0.5 * (room.times[i] - t) * (before + now)
         t, before = room.times[i], now
     now = power(state[SIZE], state[SIZE + 1], state[4], state[5], law)
-    return way + 0.5 * (state[6] - t) * (before + now)
+    whole: float = way + 0.5 * (state[6] - t) * (before + now)
+    return whole
 
 
 @scalar
@@ -231,4 +232,5 @@ def power(ux: float, uy: float, r: float, angle: float, law: Law) -> float:
     if law.friction == 0.0:
         return math.sqrt(ux * ux + uy * uy)
     fx, fy, fr, _ = friction(ux, uy, r, angle, law)
-    return -(fx * ux + fy * uy + fr * r) / law.friction
+    mean: float = -(fx * ux + fy * uy + fr * r) / law.friction
+    return mean

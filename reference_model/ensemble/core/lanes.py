@@ -21,7 +21,7 @@ from reference_model.systems import FloatArray
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up: slip is about to end; the due time has come; x or the radius had an extreme; the step size or
-the number of steps is out of bounds; an implicit step may be worthwhile.
+the number of steps is out of bounds; the core should take the step.
 """
 
 SMALLEST_STEP = 1e-13

@@ -80,7 +80,7 @@ def _scaled(system: System, contact: Contact | None, task: Task, number: int) ->
     else:
         kappa = math.sqrt(one.polar_inertia / one.mass)
         reach = one.contact_radius if contact is None else 1.0
-    return [*row, unit.length, 1.0 / unit.time, reach / kappa, one.disc_speed, kappa]
+    return [*map(float, row), unit.length, 1.0 / unit.time, reach / kappa, one.disc_speed, kappa]
 
 
 def _run(

@@ -264,7 +264,7 @@ class DiscSettings(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """Settings and what a step by the core needs; apart, because passing many arrays takes time.
+    """Settings, and what a step of the core needs.
 
     ``points`` is ``Law.around`` of the core, with lengths in units of κ/η. If ``by_core`` is set, the core takes all
     steps.

@@ -48,7 +48,7 @@ from reference_model.ensemble.disc.lanes import (
 from reference_model.ensemble.end_states import STICK_SLIP, STUCK, UNDECIDED
 
 TURNS = 1.1
-"""Number of turns of the master disc after which a stick phase is permanent."""
+"""A stick phase is permanent if it lasts for this number of turns of the master disc."""
 
 GOES_ON, ENDS, FAILS = 0, 1, 2
 
@@ -70,7 +70,7 @@ def step_by_core_with(
     short, enough = memory.short, NEAR_REST * law.friction
     if int(lanes.flag[lane]) & STIFF and not setup.by_core:
         short, enough = math.inf, law.friction
-    y = (before.x, before.y, before.ux, before.uy, before.r, before.angle, before.time)
+    y: Tuple = (before.x, before.y, before.ux, before.uy, before.r, before.angle, before.time)
     pace = lanes.now.rates.time[lane]
     prepare(room, y, lanes.now.step[lane], pace, short, memory.patience, until - before.time)
     way, status, rested, done = before.way, GOES_ON, False, False
@@ -91,7 +91,8 @@ def step_by_core_with(
         if lanes.steps[lane] > MOST_STEPS:
             status = FAILS
         done = is_done(room, enough, memory.patience) and not setup.by_core
-    new = DiscState(*_unknowns(setup), way + way_of(room, y))
+    last = _unknowns(setup)
+    new = DiscState(last[0], last[1], last[2], last[3], last[4], last[5], last[6], way + way_of(room, y))
     put(lanes.trial.state, lane, new)
     if status == FAILS:
         memory.end = UNDECIDED

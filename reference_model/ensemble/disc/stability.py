@@ -24,7 +24,7 @@ DIMENSION = 5
 def attracts(z: complex, v: complex, r: float, law: Law, circle: bool, near: float) -> bool:
     """Return whether an equilibrium or a circle attracts and lies within ``near`` of z, v and r.
 
-    Of a disc on points this is known only without friction.
+    For a disc on points we know this only without friction.
     """
     if len(law.around) > 0:
         return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0

@@ -39,7 +39,7 @@ from reference_model.trajectory import MOST_AHEAD
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
 SLOWNESS = 1e-3
-"""Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
+"""Slip speed, in units of g, below which a pin that friction does not stop starts with steps of the core."""
 
 TICK_TURNS = 4.0
 """Number of free periods without a crossing before a check."""

@@ -1,1 +1,1 @@
-"""Explicit and implicit steps of a lane."""
+"""Explicit steps of a lane."""
