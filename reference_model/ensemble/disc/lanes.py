@@ -264,7 +264,7 @@ class DiscSettings(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """Settings, and what a step of the core needs.
+    """Settings, and the parameters of steps by the core.
 
     ``points`` is ``Law.around`` of the core, with lengths in units of κ/η. If ``by_core`` is set, the core takes all
     steps.
