@@ -26,15 +26,18 @@ from exudyn_models.parts.native_contact import add_native_friction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
+from exudyn_models.solver.linear.locked_state import ContactState, Linearisation, linearise
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.step_limit import largest_stable_step
 from exudyn_models.solver.stick.sticking_contacts import ModeChange
 
 __all__ = [
     "PASSENGER_CAR",
+    "ContactState",
     "Drivetrain",
     "DrivetrainModel",
     "EnergyBalance",
+    "Linearisation",
     "ModeChange",
     "RadialSupport",
     "RingFriction",
@@ -49,6 +52,7 @@ __all__ = [
     "eigenvalues",
     "four_cylinder",
     "largest_stable_step",
+    "linearise",
     "simulate",
     "simulate_fixed_step",
     "simulate_with_native_contact",

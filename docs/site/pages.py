@@ -57,6 +57,7 @@ TASKS = {
     ),
     "Run an Exudyn model": (
         *("exudyn_models.solve_dynamic", "exudyn_models.ModeChange", "exudyn_models.largest_stable_step"),
+        *("exudyn_models.linearise", "exudyn_models.Linearisation", "exudyn_models.ContactState"),
         *("exudyn_models.eigenvalues", "exudyn_models.build_model"),
         "exudyn_models.simulate_with_native_contact",
     ),

@@ -25,7 +25,7 @@ from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.jumps import JumpCheck
-from exudyn_models.solver.linear_matrices import singular_mass
+from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates

@@ -73,6 +73,11 @@ class ModeChoice:
         if change.any():
             self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t(initial) + change, initial)
 
+    @property
+    def groups(self) -> list[list[StickingContact]]:
+        """Contacts at rest that share a load."""
+        return [group.contacts for group in self._resting.groups]
+
     def take_back(self, t: float) -> None:
         """Subtract the first slip of contacts that slide much faster at the time t (s).
 
@@ -108,7 +113,7 @@ class ModeChoice:
         self._dynamics.evaluate(t)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
         self._holding = np.array([contact.holding(t) for contact in self._contacts])
-        self._limits = np.array([contact.capacities(t) for contact in self._contacts])
+        self._limits = np.array([contact.capacities(t) for contact in self._contacts]).reshape(-1, 2)
         bounds = slips.bounds(self._present()[1], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
         modes = [
