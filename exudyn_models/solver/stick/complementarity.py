@@ -13,6 +13,7 @@ from itertools import combinations, islice, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from exudyn_models.solver.rows.active_set import LoadedRows
 from reference_model.systems import FloatArray
 
 REGULAR = 1e-12
@@ -80,10 +81,14 @@ Law = Callable[[FloatArray], tuple[float, FloatArray, FloatArray]]
 
 @dataclass(frozen=True, eq=False)
 class Sets:
-    """Sets of friction of contacts: ``blocks`` of rows, and their laws; None is an interval on an axis."""
+    """Sets of friction of contacts: ``blocks`` of rows, and their laws; None is an interval on an axis.
+
+    ``loaded`` is not None if the limits of some rows are infinite or grow with moments.
+    """
 
     blocks: Sequence[slice]
     laws: Sequence[Law | None]
+    loaded: LoadedRows | None = None
 
     def only(self, chosen: Sequence[int]) -> "Sets":
         """Return the sets of chosen contacts, whose rows follow each other."""
@@ -105,6 +110,8 @@ class Sets:
 
         ``limits``, shape (contacts, 2), are the largest forces against slip forward and backward.
         """
+        if self.loaded is not None:
+            return self.loaded.forces(to_rates, rates, limits)
         if not any(self.laws):
             return bounded_forces(to_rates, rates, -limits[:, 0], limits[:, 1])
         return self._smooth_forces(to_rates, rates, limits)
@@ -182,12 +189,14 @@ def rest_or_slip(
     """
     count = len(sets.blocks)
     own = [np.linalg.norm(to_rates[rows, rows]) for rows in sets.blocks]
-    least = np.maximum(SLIPS * np.maximum(own * static.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
+    finite = np.where(np.isfinite(static), static, 0.0)
+    least = np.maximum(SLIPS * np.maximum(own * finite.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
 
     def slips(slides: NDArray[np.bool_]) -> tuple[FloatArray, NDArray[np.bool_]]:
         limits = np.where(slides[:, None], sliding, static)
-        _, left = sets.forces(to_rates, rates, limits)
-        moves = sets.sizes(left) > least
+        forces, left = sets.forces(to_rates, rates, limits)
+        sizes = np.array([np.linalg.norm(forces[rows]) for rows in sets.blocks])
+        moves = sets.sizes(left) > np.maximum(least, SLIPS * np.array(own) * sizes)
         return left, moves
 
     slides = np.zeros(count, dtype=bool)

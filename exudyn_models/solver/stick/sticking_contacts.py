@@ -10,9 +10,11 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_pairs import FREE, AxialStick, Mode, spanned
-from exudyn_models.solver.contacts import contacts_of
+from exudyn_models.forces.axial_pairs import FREE, Mode, RowLaw, spanned
+from exudyn_models.solver.contacts import laws_of
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.rows.laws import LEAST as UNLOADED
+from exudyn_models.solver.rows.laws import RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
@@ -59,7 +61,7 @@ class StickingContact:
 
     item: int
     """Object number of the connector."""
-    stick: AxialStick
+    stick: RowLaw
     places: NDArray[Any]
     """Positions of its coordinates among the model's."""
 
@@ -159,6 +161,14 @@ class StickingContact:
         if self.opens_or_closes(self.holding(t)):
             return -1.0
         return int(self.mode) * self.stick.slip(*self._state(mbs)[:2]) if self.stick.slides else 1.0
+
+
+class RotorCoupling(StickingContact):
+    """One-way clutch or mesh, which never opens."""
+
+    def holding(self, t: float) -> float:
+        """Return a moment in N m without effect on the choice of modes; the true limits depend on the moments."""
+        return UNLOADED
 
 
 class PlanarContact(StickingContact):
@@ -269,17 +279,22 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
     Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
     """
     contacts = [
-        StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
-        for item, contact in contacts_of(mbs).items()
-        if contact.stick is not None
+        StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)))
+        for item, law in laws_of(mbs).items()
     ]
     # Powers keep periodic motions from vanishing at all of these times.
     _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)
     return [
-        (StickingContact if part.on_axis else PlanarContact)(contact.item, part, contact.places)
+        _kind(part)(contact.item, part, contact.places)
         for contact in contacts
         for part in contact.stick.active
     ]
+
+
+def _kind(part: RowLaw) -> type[StickingContact]:
+    if isinstance(part, RotaryLaw):
+        return RotorCoupling
+    return StickingContact if part.on_axis else PlanarContact
 
 
 def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) -> None:

@@ -1,0 +1,141 @@
+"""Connectors of couplings between rotors on one axis, and their handle.
+
+A coupling is a massless ``ObjectGenericODE2`` over the nodes of its rotors. Its constraints act on the coordinates of
+this object.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_models.forces.axial_pairs import Mode
+from exudyn_models.parts.connector import add_connector
+from exudyn_models.solver.contacts import Coupling, motion_of, register
+from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
+from exudyn_models.solver.jumps import watch_powers
+from exudyn_models.solver.rows.laws import MeshLaw, RotaryLaw
+from reference_model.systems import FloatArray, require_choice, shown
+
+Quantity = Literal["moment", "friction", "relative_spin", "mode", "power", "heat"]
+
+
+@dataclass(frozen=True, eq=False)
+class RotorCoupling:
+    """Handle of a coupling; ``item`` is the ``ObjectIndex`` of its connector in ``mbs``, ``nodes`` are its rotors."""
+
+    mbs: Any
+    item: Any
+    nodes: tuple[Any, ...]
+    _law: RotaryLaw = field(repr=False)
+    _coupling: Coupling = field(repr=False)
+
+    def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
+        """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
+
+        - ``"moment"``: T of the constraint of a gear or differential, or the moment of a one-way clutch, in N m.
+        - ``"friction"``: friction of the mesh on the first rotor in N m, 0 for a one-way clutch.
+        - ``"relative_spin"``: the slip s in rad/s.
+        - ``"mode"``: 0 locked, 1 or −1 slipping forward or backward.
+        - ``"power"``: lost power in W.
+        - ``"heat"``: its integral since the start, in J.
+
+        ``options`` are those of Exudyn's sensors. Raises ``ValueError`` for other quantities.
+        """
+        require_choice("quantity", quantity, get_args(Quantity))
+        options = IN_MEMORY | options
+        if quantity == "heat":
+
+            def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
+                return [self.power(mbs, t)]
+
+            watch_powers(rate, ["heat"])
+            node = add_integrals(self.mbs, rate, [0.0])
+            return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
+
+        def value(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
+            return [float(self._value(quantity, t))]
+
+        return self.mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=value, **options))
+
+    def power(self, mbs: Any, t: float) -> float:
+        """Return the lost power in W, in the form that ``add_energy_balance`` expects."""
+        return -self._law.moment(t, 0.0) * self._spin()
+
+    def _value(self, quantity: Quantity, t: float) -> float:
+        law = self._law
+        if quantity == "relative_spin":
+            return self._spin()
+        if quantity == "mode":
+            return float(law.visible_mode)
+        if quantity == "power":
+            return self.power(self.mbs, t)
+        if quantity == "moment" and isinstance(law, MeshLaw):
+            return law.load
+        if quantity == "friction" and not isinstance(law, MeshLaw):
+            return 0.0
+        return float(law.held_forces()[0]) if law.mode == Mode.LOCKED else law.moment(t, 0.0)
+
+    def _spin(self) -> float:
+        return float(self._law.weights @ motion_of(self.mbs, self._coupling, self.item, CURRENT)[1])
+
+
+def rotors_of(mbs: Any, **rotors: Any) -> dict[str, Any]:
+    """Return the nodes of rotors, by the names of arguments: nodes or objects on one axis; None is the ground.
+
+    Raises ``ValueError`` if one is not a rotor, or two are equal.
+    """
+    nodes: dict[str, Any] = {}
+    for name, rotor in rotors.items():
+        node = rotor
+        try:
+            if isinstance(rotor, exu.ObjectIndex):  # type: ignore[attr-defined]
+                node = mbs.GetObjectParameter(rotor, "nodeNumber")
+            is_rotor = node is None or mbs.GetNode(node)["nodeType"] == "1D"
+        except (exu.ExudynError, TypeError, ValueError):
+            is_rotor = False
+        if not is_rotor:
+            raise ValueError(
+                f"{name} = {shown(rotor)}: it must be a Node1D or an ObjectRotationalMass1D of this model, or None "
+                "for the ground"
+            )
+        if node is not None and int(node) in {int(other) for other in nodes.values() if other is not None}:
+            raise ValueError(f"{name} = {shown(rotor)}: a coupling is between different rotors")
+        nodes[name] = node
+    return nodes
+
+
+def weights_of(nodes: Sequence[Any], weights: Sequence[float]) -> FloatArray:
+    """Return the weights of the nodes that are not the ground."""
+    return np.array([weight for node, weight in zip(nodes, weights, strict=True) if node is not None], float)
+
+
+def add_coupling(mbs: Any, nodes: Sequence[Any], law: RotaryLaw) -> RotorCoupling:
+    """Add a coupling with a law to a model; return its handle. ``nodes`` may contain None for the ground."""
+    coupling = Coupling(stick=law)
+    register(mbs, coupling)
+    turning = tuple(node for node in nodes if node is not None)
+    item = add_connector(mbs, turning, law.force, law.jacobian, coupling.name)
+    if isinstance(law, MeshLaw):
+        law.item = add_constraint(mbs, item, law.constraint)
+    law.use([add_constraint(mbs, item, law.weights, name=coupling.lock_name(0), activeConnector=False)])
+    return RotorCoupling(mbs, item, turning, law, coupling)
+
+
+def add_constraint(mbs: Any, item: Any, gradient: FloatArray, **options: Any) -> int:
+    """Add the constraint gradient·ω = 0 of the coordinates of an object; return its number."""
+    ground = mbs.AddNode(items.NodePointGround())
+    markers = [
+        mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=ground)),
+        mbs.AddMarker(items.MarkerObjectODE2Coordinates(objectNumber=item)),
+    ]
+    constraint = items.ObjectConnectorCoordinateVector(
+        markerNumbers=markers,
+        scalingMarker0=np.zeros((1, 0)),
+        scalingMarker1=np.array([gradient]),
+        velocityLevel=True,
+        **options,
+    )
+    return int(mbs.AddObject(constraint))
