@@ -139,12 +139,12 @@ class _Look:
             self._too_many = self._count.count(t)
         return self._finite and not self._too_many
 
-    def finish(self) -> None:
-        """Raise ``SimulationError`` if a check ended the run; warn about jumps."""
+    def finish(self, changes: Sequence[ModeChange]) -> None:
+        """Raise ``SimulationError`` if a check ended the run; warn about jumps at other times than ``changes``."""
         if not self._finite or self._too_many:
             raise SimulationError(advice(self._solver.name, self.duration, self._too_many or NOT_FINITE))
         if self._jumps is not None:
-            self._jumps.warn()
+            self._jumps.warn([change.time for change in changes])
 
 
 def _solve(
@@ -172,7 +172,7 @@ def _solve(
     except exu.ExudynError as error:
         _raise_cause(error, mbs, solver.name, look.duration)
         raise
-    look.finish()
+    look.finish(changes)
     return changes
 
 

@@ -18,6 +18,7 @@ from exudyn_models.solver.stick.mode_choice import ModeChoice
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.sticking_contacts import (
     PlanarContact,
+    SpringFlanks,
     StickingContact,
     running,
     sticking_contacts,
@@ -162,7 +163,11 @@ def linearise(mbs: Any) -> Linearisation:
         contacts = sticking_contacts(mbs, t, t + STEP)
         with running(mbs, contacts):
             groups = _settle(mbs, t, contacts)
-            states = tuple(_state_of(mbs, t, contact, groups) for contact in contacts)
+            states = tuple(
+                _state_of(mbs, t, contact, groups)
+                for contact in contacts
+                if not isinstance(contact, SpringFlanks)
+            )
             return _about_initial_values(mbs, t, states)
     finally:
         for (state, accelerations), configuration in zip(before, configurations, strict=True):

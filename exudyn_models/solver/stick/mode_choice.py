@@ -24,7 +24,7 @@ from exudyn_models.solver.stick.resting import Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
-from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
+from exudyn_models.solver.stick.sticking_contacts import PlanarContact, SpringFlanks, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -39,6 +39,9 @@ SHRUNK = 1e-6
 
 NEAR = 0.02
 """Unused share of capacity below which loads are computed again, because those of Exudyn's steps contain errors."""
+
+AHEAD = 1e-9
+"""Share of a step to look ahead for the flank of a spring that is pressed."""
 
 GROWN = 10.0
 """Least slip for ``take_back``, relative to the first slip."""
@@ -58,6 +61,8 @@ class ModeChoice:
         slides: SlidingSteps,
         step: float,
     ) -> None:
+        self._springs = [contact for contact in contacts if isinstance(contact, SpringFlanks)]
+        contacts = contacts[: len(contacts) - len(self._springs)]
         self._mbs, self._data, self._contacts, self._slides = mbs, mbs.systemData, contacts, slides
         self._step, self._dynamics, self._resting = step, Dynamics(mbs, t, step), Resting(mbs)
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
@@ -103,7 +108,9 @@ class ModeChoice:
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
-        self._ended = self._resting.share([one for one in ended if one.mode != Mode.OPEN])
+        self._ended = self._resting.share(
+            [one for one in ended if one.mode != Mode.OPEN and not isinstance(one, SpringFlanks)]
+        )
         self._overloaded = {contact for contact in self._ended if contact.mode == Mode.LOCKED}
         self._slipped = set()
 
@@ -113,6 +120,8 @@ class ModeChoice:
         Until ``end``, contacts that have begun to slip have sliding friction, even if others change their modes.
         """
         self._load()
+        for spring in self._springs:
+            spring.choose(self._mbs, AHEAD * self._step)
         for contact in self._contacts:
             contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
@@ -306,11 +315,15 @@ class ModeChoice:
         return wanted
 
     def margins(self, t: float) -> FloatArray:
-        """Return numbers that fall below zero when the present modes end, shape (contacts,).
+        """Return numbers that fall below zero when the present modes end, shape (contacts + springs,).
 
         They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
         rest, or ±1 without load or coefficient.
         """
+        springs = [spring.margin(self._mbs, t) for spring in self._springs]
+        return np.append(self._margins_of_contacts(t), springs)
+
+    def _margins_of_contacts(self, t: float) -> FloatArray:
         slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
         margins: FloatArray = self._offsets + self._directions * slips
         for i in self._varying:

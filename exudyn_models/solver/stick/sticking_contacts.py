@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from exudyn_models.forces.axial_pairs import FREE, Mode, RowLaw, spanned
 from exudyn_models.solver.contacts import laws_of
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import LEAST as UNLOADED
 from exudyn_models.solver.rows.laws import RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
@@ -171,6 +172,28 @@ class RotorCoupling(StickingContact):
         return UNLOADED
 
 
+class SpringFlanks(StickingContact):
+    """Flanks of a torsional spring with backlash."""
+
+    @property
+    def flanks(self) -> Backlash:
+        """Law of the spring."""
+        return cast(Backlash, self.stick)
+
+    def choose(self, mbs: Any, ahead: float) -> None:
+        """Choose the flank that is pressed a time ``ahead`` (s) from now."""
+        twist, rate = self._motion(mbs)
+        self.flanks.mode = self.flanks.pressed(twist + ahead * rate, rate)
+
+    def margin(self, mbs: Any, t: float) -> float:
+        """Return a moment in N m that falls below zero when the pressed flank changes."""
+        return self.flanks.margin(*self._motion(mbs))
+
+    def _motion(self, mbs: Any) -> tuple[float, float]:
+        q, q_t, _ = self._state(mbs)
+        return float(self.flanks.weights @ q), float(self.flanks.weights @ q_t)
+
+
 class PlanarContact(StickingContact):
     """Contact between bodies that may slide sideways."""
 
@@ -274,7 +297,7 @@ class PlanarContact(StickingContact):
 
 
 def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
-    """Return the contacts of a model that stick exactly, on one axis or in the plane, in a run between two times (s).
+    """Return the contacts of a model that stick exactly in a run between two times (s), and springs after them.
 
     Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
     """
@@ -284,14 +307,17 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
     ]
     # Powers keep periodic motions from vanishing at all of these times.
     _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)
-    return [
+    found = [
         _kind(part)(contact.item, part, contact.places)
         for contact in contacts
         for part in contact.stick.active
     ]
+    return sorted(found, key=lambda contact: isinstance(contact, SpringFlanks))
 
 
 def _kind(part: RowLaw) -> type[StickingContact]:
+    if isinstance(part, Backlash):
+        return SpringFlanks
     if isinstance(part, RotaryLaw):
         return RotorCoupling
     return StickingContact if part.on_axis else PlanarContact
