@@ -28,7 +28,7 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.parts.rotational.couplings import RotorCoupling
 from exudyn_models.parts.rotational.gears import add_differential, add_gear, add_planetary
 from exudyn_models.parts.rotational.one_way_clutch import add_one_way_clutch
-from exudyn_models.parts.rotational.torsional_spring import TorsionalSpring, add_torsional_spring
+from exudyn_models.parts.rotational.torsional_spring import add_torsional_spring
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
 from exudyn_models.solver.linear.locked_state import ContactState, Linearisation, linearise
 from exudyn_models.solver.solve_dynamic import solve_dynamic
@@ -47,7 +47,6 @@ __all__ = [
     "RingFriction",
     "RotorCoupling",
     "ThermalNode",
-    "TorsionalSpring",
     "add_differential",
     "add_energy_balance",
     "add_gear",

@@ -11,15 +11,15 @@ from typing import Any, Literal, get_args
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.solver.contacts import Coupling, motion_of, register
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
+from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import MeshLaw, RotaryLaw
 from reference_model.systems import FloatArray, require_choice, shown
 
-Quantity = Literal["moment", "friction", "relative_spin", "mode", "power", "heat"]
+Quantity = Literal["moment", "friction", "twist", "relative_spin", "mode", "power", "heat"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,12 +35,12 @@ class RotorCoupling:
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
 
-        - ``"moment"``: T of the constraint of a gear or differential, or the moment of a one-way clutch, in N m.
-        - ``"friction"``: friction of the mesh on the first rotor in N m, 0 for a one-way clutch.
-        - ``"relative_spin"``: the slip s in rad/s.
-        - ``"mode"``: 0 locked, 1 or −1 slipping forward or backward.
-        - ``"power"``: lost power in W.
-        - ``"heat"``: its integral since the start, in J.
+        - ``"moment"``: T of a gear or differential, or the moment of others on the second rotor, in N m.
+        - ``"friction"``: friction of a mesh on the first rotor in N m, 0 for others.
+        - ``"twist"``, ``"relative_spin"``: the angle in rad and the rate in rad/s of the slip: first rotor minus
+          carrier, left minus right, driven minus driver, or second minus first rotor of a spring.
+        - ``"mode"``: 0 locked, 1 or −1 slipping, or pressed, forward or backward, 2 open.
+        - ``"power"``, ``"heat"``: lost power in W, and its integral since the start in J.
 
         ``options`` are those of Exudyn's sensors. Raises ``ValueError`` for other quantities.
         """
@@ -56,30 +56,32 @@ class RotorCoupling:
             return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
 
         def value(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
-            return [float(self._value(quantity, t))]
+            twist, spin = self._motion()
+            moment, friction = self._law.moment_and_friction(twist, spin)
+            return [
+                {
+                    "moment": moment,
+                    "friction": friction,
+                    "twist": twist,
+                    "relative_spin": spin,
+                    "mode": float(self._law.mode_at(twist, spin)),
+                    "power": self._law.lost_power(twist, spin),
+                }[quantity]
+            ]
 
         return self.mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=value, **options))
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the lost power in W, in the form that ``add_energy_balance`` expects."""
-        return -self._law.moment(t, 0.0) * self._spin()
+        return self._law.lost_power(*self._motion())
 
-    def _value(self, quantity: Quantity, t: float) -> float:
-        law = self._law
-        if quantity == "relative_spin":
-            return self._spin()
-        if quantity == "mode":
-            return float(law.visible_mode)
-        if quantity == "power":
-            return self.power(self.mbs, t)
-        if quantity == "moment" and isinstance(law, MeshLaw):
-            return law.load
-        if quantity == "friction" and not isinstance(law, MeshLaw):
-            return 0.0
-        return float(law.held_forces()[0]) if law.mode == Mode.LOCKED else law.moment(t, 0.0)
+    def stored_energy(self, mbs: Any) -> float:
+        """Return the energy of a spring in J, in the form that ``add_energy_balance`` expects."""
+        return self._law.energy(self._motion()[0])
 
-    def _spin(self) -> float:
-        return float(self._law.weights @ motion_of(self.mbs, self._coupling, self.item, CURRENT)[1])
+    def _motion(self) -> tuple[float, float]:
+        q, q_t = motion_of(self.mbs, self._coupling, self.item, CURRENT)
+        return self._law.twist(q), self._law.slip(q, q_t)
 
 
 def rotors_of(mbs: Any, **rotors: Any) -> dict[str, Any]:
@@ -120,7 +122,8 @@ def add_coupling(mbs: Any, nodes: Sequence[Any], law: RotaryLaw) -> RotorCouplin
     item = add_connector(mbs, turning, law.force, law.jacobian, coupling.name)
     if isinstance(law, MeshLaw):
         law.item = add_constraint(mbs, item, law.constraint)
-    law.use([add_constraint(mbs, item, law.weights, name=coupling.lock_name(0), activeConnector=False)])
+    if not isinstance(law, Backlash):
+        law.use([add_constraint(mbs, item, law.weights, name=coupling.lock_name(0), activeConnector=False)])
     return RotorCoupling(mbs, item, turning, law, coupling)
 
 

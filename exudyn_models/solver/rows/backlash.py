@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import Mode
+from exudyn_models.forces.axial_pairs import SLIDING, Mode
+from exudyn_models.forces.slip_kinematics import Floats
 from exudyn_models.solver.rows.laws import RotaryLaw
 from reference_model.systems import FloatArray
 
@@ -20,8 +21,8 @@ SIDES = (1, -1)
 class Backlash(RotaryLaw):
     """Spring and damper on each flank, beyond half of the ``clearance`` in rad, which push but never pull.
 
-    A flank is pressed by ±φ − clearance/2, with the twist φ from the ``middle``. Its moment is the stiffness times
-    this press plus the damping times the rate of ±φ, while both are positive.
+    A flank is pressed by ±φ − clearance/2, with the twist φ; ``middle`` is its part from reference coordinates. The
+    moment is the stiffness times this press plus the damping times the rate of ±φ, while both are positive.
     """
 
     stiffness: float = field(kw_only=True)
@@ -31,7 +32,7 @@ class Backlash(RotaryLaw):
 
     def _flank(self, side: int, twist: float, rate: float) -> tuple[float, float]:
         """Return stiffness·press, and the moment in N m if the flank is pressed."""
-        elastic = self.stiffness * (side * (twist + self.middle) - self.clearance / 2.0)
+        elastic = self.stiffness * (side * twist - self.clearance / 2.0)
         return elastic, elastic + side * self.damping * rate
 
     def pressed(self, twist: float, rate: float) -> Mode:
@@ -44,10 +45,18 @@ class Backlash(RotaryLaw):
             return self._flank(int(self.mode or 0), twist, rate)[1]
         return -max(min(self._flank(side, twist, rate)) for side in SIDES)
 
-    def moment_at(self, twist: float, rate: float) -> float:
-        """Return the moment on the second rotor in N m."""
-        mode = self.mode if self.running else self.pressed(twist, rate)
-        return -int(mode) * self._flank(int(mode), twist, rate)[1] if mode in (Mode(1), Mode(-1)) else 0.0
+    def twist(self, q: Floats | FloatArray) -> float:
+        """Return the twist in rad; ``q`` excludes reference values."""
+        return super().twist(q) + self.middle
+
+    def mode_at(self, twist: float, rate: float) -> Mode:
+        """Return the pressed flank, which is constant within a step of ``solve_dynamic``."""
+        return self.visible_mode if self.running else self.pressed(twist, rate)
+
+    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
+        """Return the moment on the second rotor in N m, and no friction."""
+        mode = self.mode_at(twist, rate)
+        return -int(mode) * self._flank(int(mode), twist, rate)[1] if mode in SLIDING else 0.0, 0.0
 
     def energy(self, twist: float) -> float:
         """Return the energy in J of the pressed spring."""
@@ -56,12 +65,12 @@ class Backlash(RotaryLaw):
     def lost_power(self, twist: float, rate: float) -> float:
         """Return the power in W of the damper, or of a flank that follows the other without force."""
         elastic = sum(side * max(0.0, self._flank(side, twist, rate)[0]) for side in SIDES)
-        return -(self.moment_at(twist, rate) + elastic) * rate
+        return -(self.moment_and_friction(twist, rate)[0] + elastic) * rate
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         """Return the moments on the nodes (user function of the connector)."""
-        moments: list[float] = (self.moment_at(self.slip(q, q), self.slip(q, q_t)) * self.weights).tolist()
-        return moments
+        moment, _ = self.moment_and_friction(self.twist(q), self.slip(q, q_t))
+        return [moment * weight for weight in self.weights.tolist()]
 
     def jacobian(
         self,
@@ -74,6 +83,6 @@ class Backlash(RotaryLaw):
         velocity_factor: float,
     ) -> FloatArray:
         """Return the derivatives of minus the moments (user function of the connector)."""
-        mode = self.mode if self.running else self.pressed(self.slip(q, q), self.slip(q, q_t))
+        mode = self.mode_at(self.twist(q), self.slip(q, q_t))
         slope = position_factor * self.stiffness + velocity_factor * self.damping
-        return (slope if mode in (Mode(1), Mode(-1)) else 0.0) * np.outer(self.weights, self.weights)
+        return (slope if mode in SLIDING else 0.0) * np.outer(self.weights, self.weights)

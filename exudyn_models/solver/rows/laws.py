@@ -63,6 +63,26 @@ class RotaryLaw(RowLaw):
         weights: Floats = self.weights.tolist()
         return weights
 
+    def twist(self, q: Floats | FloatArray) -> float:
+        """Return the angle of the slip in rad; ``q`` excludes reference values."""
+        return float(self.weights @ q)
+
+    def mode_at(self, twist: float, rate: float) -> Mode:
+        """Return the mode that a sensor shows."""
+        return self.visible_mode
+
+    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
+        """Return the moment and the friction in N m that sensors show."""
+        return float(self.held_forces()[0]) if self.mode == Mode.LOCKED else 0.0, 0.0
+
+    def lost_power(self, twist: float, rate: float) -> float:
+        """Return the lost power in W."""
+        return -self.moment_and_friction(twist, rate)[1] * rate
+
+    def energy(self, twist: float) -> float:
+        """Return the stored energy in J."""
+        return 0.0
+
     def check_running(self) -> None:
         """Raise ``ValueError`` unless ``solve_dynamic`` switches modes."""
         if not self.running:
@@ -117,6 +137,11 @@ class MeshLaw(RotaryLaw):
     @property
     def _load(self) -> float:
         return float(self.meshes.now()[0][self.place]) if self.meshes else 0.0
+
+    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
+        """Return T and the friction in N m."""
+        locked = self.mode == Mode.LOCKED
+        return self.load, float(self.held_forces()[0]) if locked else self.moment(0.0, rate)
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest friction in N m against sliding forward and backward."""

@@ -191,7 +191,7 @@ class SpringFlanks(StickingContact):
 
     def _motion(self, mbs: Any) -> tuple[float, float]:
         q, q_t, _ = self._state(mbs)
-        return float(self.flanks.weights @ q), float(self.flanks.weights @ q_t)
+        return self.flanks.twist(q), self.flanks.slip(q, q_t)
 
 
 class PlanarContact(StickingContact):
