@@ -105,3 +105,9 @@ class LoadedRows:
             if same:
                 break
         return np.asarray(forces, float), loads
+
+
+def unloaded(count: int) -> LoadedRows:
+    """Return ``count`` rows without meshes that may all rest."""
+    none = np.zeros((0, count))
+    return LoadedRows(np.empty(0), none, [None] * count, np.zeros(count, int), np.ones(count))

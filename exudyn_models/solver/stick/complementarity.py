@@ -13,11 +13,8 @@ from itertools import combinations, islice, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.solver.rows.active_set import LoadedRows
+from exudyn_models.solver.rows.active_set import LoadedRows, unloaded
 from reference_model.systems import FloatArray
-
-REGULAR = 1e-12
-"""Relative compliance that makes the forces of redundant contacts unique."""
 
 SLIPS = 1e-8
 """Smallest slip acceleration, relative to that of friction alone; less is a rounding error."""
@@ -33,46 +30,6 @@ PREFERRED = 1e3
 
 SMOOTH, CLOSE, ROUNDING = 1e-11, 1e-4, 1e-14
 """Last share of a slip acceleration that smooths friction, and tolerances of forces and of rounding errors."""
-
-
-def bounded_forces(
-    to_rates: FloatArray, rates: FloatArray, low: FloatArray, high: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the forces between ``low`` and ``high``, shape (k,), and the slip accelerations that they leave.
-
-    ``to_rates``, shape (k, k), is A, and ``rates`` is g. An active-set method finds the minimum.
-    """
-    size = np.maximum(np.maximum(np.abs(low), np.abs(high)), np.finfo(float).tiny)
-    matrix, vector = size[:, None] * to_rates * size, size * rates
-    weight = np.maximum(np.diag(matrix), np.abs(vector))
-    weight[weight == 0.0] = 1.0
-    matrix = matrix + np.diag(REGULAR * weight)
-    low, high = low / size, high / size
-    x = np.clip(np.zeros(len(rates)), low, high)
-    free = low < high
-    for _ in range(20 * len(x) + 20):
-        wanted = x.copy()
-        wanted[free] = np.linalg.solve(
-            matrix[np.ix_(free, free)], -(vector + matrix[:, ~free] @ x[~free])[free]
-        )
-        change = wanted - x
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shares = np.where(
-                change > 0.0, (high - x) / change, np.where(change < 0.0, (low - x) / change, np.inf)
-            )
-        first = int(np.argmin(shares)) if len(x) else 0
-        if len(x) and shares[first] < 1.0:
-            x = np.clip(x + max(shares[first], 0.0) * change, low, high)
-            x[first] = high[first] if change[first] > 0.0 else low[first]
-            free[first] = False
-            continue
-        x, slope = wanted, (matrix @ wanted + vector) / weight
-        against = np.where(free | (low == high), 0.0, np.where(x >= high, slope, -slope))
-        if not len(x) or against.max() <= REGULAR:
-            break
-        free[int(np.argmax(against))] = True
-    forces = size * x
-    return forces, rates + to_rates @ forces
 
 
 Law = Callable[[FloatArray], tuple[float, FloatArray, FloatArray]]
@@ -110,10 +67,8 @@ class Sets:
 
         ``limits``, shape (contacts, 2), are the largest forces against slip forward and backward.
         """
-        if self.loaded is not None:
-            return self.loaded.forces(to_rates, rates, limits)
         if not any(self.laws):
-            return bounded_forces(to_rates, rates, -limits[:, 0], limits[:, 1])
+            return (self.loaded or unloaded(len(rates))).forces(to_rates, rates, limits)
         return self._smooth_forces(to_rates, rates, limits)
 
     def _smooth_forces(
