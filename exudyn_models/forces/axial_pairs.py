@@ -174,9 +174,14 @@ class RowLaw:
         """Parts that stick and slide in this model."""
         return self.parts
 
-    def use(self, locks: Sequence[int]) -> None:
+    @property
+    def constraints(self) -> tuple[int, ...]:
+        """Object numbers of all constraints of the law."""
+        return self.locks
+
+    def use(self, constraints: Sequence[int]) -> None:
         """Stick by the constraints with these object numbers."""
-        self.locks = tuple(locks)
+        self.locks = tuple(constraints)
 
     @property
     def visible_mode(self) -> Mode:

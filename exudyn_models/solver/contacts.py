@@ -137,11 +137,11 @@ def find_again(mbs: Any) -> None:
     for contact in contacts:
         if contact.stick is None or contact.name not in numbers:
             continue
-        names = [contact.lock_name(direction) for direction in range(len(contact.stick.locks))]
+        names = [contact.lock_name(direction) for direction in range(len(contact.stick.constraints))]
         if not numbers.keys() >= set(names):
             raise ValueError(
                 f"object {numbers[contact.name]}, {contact.name!r}: constraints that let it stick exactly were "
-                "deleted; delete the contact as well, or keep the objects that add_ring_friction has added"
+                "deleted; delete the contact as well, or keep the objects that its function has added"
             )
         contact.stick.use([numbers[name] for name in names])
 

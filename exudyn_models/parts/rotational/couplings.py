@@ -120,14 +120,20 @@ def add_coupling(mbs: Any, nodes: Sequence[Any], law: RotaryLaw) -> RotorCouplin
     register(mbs, coupling)
     turning = tuple(node for node in nodes if node is not None)
     item = add_connector(mbs, turning, law.force, law.jacobian, coupling.name)
+    gradients = [] if isinstance(law, Backlash) else [law.weights]
     if isinstance(law, MeshLaw):
-        law.item = add_constraint(mbs, item, law.constraint)
-    if not isinstance(law, Backlash):
-        law.use([add_constraint(mbs, item, law.weights, name=coupling.lock_name(0), activeConnector=False)])
+        gradients = [law.constraint] if law.lossless else [law.weights, law.constraint]
+    numbers = [
+        add_constraint(mbs, item, gradient, name=coupling.lock_name(i))
+        for i, gradient in enumerate(gradients)
+    ]
+    law.use(numbers)
+    for lock in law.locks:
+        mbs.SetObjectParameter(lock, "activeConnector", False)
     return RotorCoupling(mbs, item, turning, law, coupling)
 
 
-def add_constraint(mbs: Any, item: Any, gradient: FloatArray, **options: Any) -> int:
+def add_constraint(mbs: Any, item: Any, gradient: FloatArray, name: str) -> int:
     """Add the constraint gradient·ω = 0 of the coordinates of an object; return its number."""
     ground = mbs.AddNode(items.NodePointGround())
     markers = [
@@ -139,6 +145,6 @@ def add_constraint(mbs: Any, item: Any, gradient: FloatArray, **options: Any) ->
         scalingMarker0=np.zeros((1, 0)),
         scalingMarker1=np.array([gradient]),
         velocityLevel=True,
-        **options,
+        name=name,
     )
     return int(mbs.AddObject(constraint))

@@ -52,11 +52,14 @@ def add_gear(
     nodes = list(rotors_of(mbs, first=first, second=second, carrier=carrier).values())
     if (ratio := finite_number("ratio", ratio)) == 0.0:
         raise ValueError("ratio = 0: it must not be zero")
+    table = _efficiencies(efficiency)
     law = MeshLaw(
         weights_of(nodes, (1.0, 0.0, -1.0)),
+        mbs.systemData,
         constraint=weights_of(nodes, (1.0, -ratio, ratio - 1.0)),
+        lossless=bool((table[:, 1:] == 1.0).all()),
         preload=0.0,
-        share=_share_of(efficiency),
+        share=_share_of(table),
     )
     return add_coupling(mbs, nodes, law)
 
@@ -90,15 +93,17 @@ def add_differential(
             raise ValueError(f"{name} = {value:g}: it must be >= 0")
     law = MeshLaw(
         weights_of(nodes, (0.0, 1.0, -1.0)),
+        mbs.systemData,
         constraint=weights_of(nodes, (-2.0, 1.0, 1.0)),
+        lossless=preload == ramp == 0.0,
         preload=preload,
         share=lambda load, drives: 2.0 * ramp,
     )
     return add_coupling(mbs, nodes, law)
 
 
-def _share_of(efficiency: Efficiency) -> Share:
-    """Return the share of |T| that friction has: 1/η − 1 if the first rotor drives, else 1 − η'."""
+def _efficiencies(efficiency: Efficiency) -> FloatArray:
+    """Return rows of |T| in N m, η and η', shape (n, 3)."""
     numbers = finite_numbers("efficiency", efficiency)
     if numbers.ndim == 0:
         numbers = np.full(2, float(numbers))
@@ -117,6 +122,12 @@ def _share_of(efficiency: Efficiency) -> Share:
         raise ValueError(
             f"efficiency = {shown(efficiency)}: it must be > 0 and <= 1 if the first rotor drives, and <= 1 otherwise"
         )
+    return numbers
+
+
+def _share_of(table: FloatArray) -> Share:
+    """Return the share of |T| that friction has: 1/η − 1 if the first rotor drives, else 1 − η'."""
+    loads, forward, backward = table.T
     if len(loads) == 1:
         shares = {True: float(1.0 / forward[0] - 1.0), False: float(1.0 - backward[0])}
         return lambda load, drives: shares[drives]

@@ -14,5 +14,4 @@ def add_one_way_clutch(mbs: Any, driver: Any, driven: Any) -> RotorCoupling:
     ``add_gear``; None is the ground.
     """
     nodes = list(rotors_of(mbs, driver=driver, driven=driven).values())
-    law = OneWayLaw(weights_of(nodes, (-1.0, 1.0)), multipliers=lambda: mbs.systemData.GetAECoordinates())
-    return add_coupling(mbs, nodes, law)
+    return add_coupling(mbs, nodes, OneWayLaw(weights_of(nodes, (-1.0, 1.0)), mbs.systemData))

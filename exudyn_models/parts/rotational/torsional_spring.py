@@ -27,6 +27,7 @@ def add_torsional_spring(
     ]
     law = Backlash(
         weights_of(nodes, (-1.0, 1.0)),
+        mbs.systemData,
         stiffness=positive_number("stiffness", stiffness, "N m/rad"),
         damping=damping,
         clearance=positive_number("backlash", backlash, "rad"),

@@ -1,5 +1,6 @@
 """Linearisation of a model in its present state, with locked contacts as constraints."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -7,12 +8,13 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve, null_space
+from scipy.linalg import null_space
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.linear.matrices import matrices_of_model
+from exudyn_models.solver.rows.laws import MeshLaw
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.mode_choice import ModeChoice
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
@@ -69,7 +71,7 @@ class ContactState:
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
-    """Small motions x of a model about a state: M·ẍ + D·ẋ + K·x + Jᵀ·λ = 0 with J·x = 0.
+    """Small motions x of a model about a state: M·ẍ + D·ẋ + K·x + Rᵀ·λ = 0 with J·x = 0.
 
     Parameters
     ----------
@@ -79,6 +81,8 @@ class Linearisation:
         M, D and K of all second-order coordinates.
     constraints : array of shape (m, n)
         J, the gradients of joints and of locked contacts.
+    reactions : array of shape (m, n)
+        R, the directions of their forces: J, but turned by the friction of sliding gears with losses.
     contacts : tuple of ContactState
         Contacts with exact stick.
 
@@ -89,6 +93,7 @@ class Linearisation:
     damping: FloatArray
     stiffness: FloatArray
     constraints: FloatArray
+    reactions: FloatArray
     contacts: tuple[ContactState, ...] = field(repr=False)
 
     @property
@@ -111,18 +116,24 @@ class Linearisation:
 
     @cached_property
     def _solution(self) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        lengths = np.linalg.norm(self.constraints, axis=1, keepdims=True)
-        free = null_space(self.constraints / lengths) if len(lengths) else np.eye(len(self.mass))
+        free, unloaded = (_null_space(gradients) for gradients in (self.constraints, self.reactions))
         mass, damping, stiffness = (
-            free.T @ matrix @ free for matrix in (self.mass, self.damping, self.stiffness)
+            unloaded.T @ matrix @ free for matrix in (self.mass, self.damping, self.stiffness)
         )
         size = len(mass)
-        lower = -cho_solve(cho_factor(mass), np.hstack((stiffness, damping)))
+        lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
         values, vectors = np.linalg.eig(np.vstack((np.hstack((np.zeros((size, size)), np.eye(size))), lower)))
         order = np.lexsort((values.imag, np.abs(values).round(12)))
         shapes = free @ vectors[:size, order]
         shapes /= np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
         return values[order].astype(complex), shapes.astype(complex)
+
+
+def _null_space(rows: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of the vectors that vanish on all rows, shape (n, k)."""
+    if not len(rows):
+        return np.eye(rows.shape[1])
+    return np.asarray(null_space(rows / np.linalg.norm(rows, axis=1, keepdims=True)))
 
 
 def linearise(mbs: Any) -> Linearisation:
@@ -168,7 +179,7 @@ def linearise(mbs: Any) -> Linearisation:
                 for contact in contacts
                 if not isinstance(contact, SpringFlanks)
             )
-            return _about_initial_values(mbs, t, states)
+            return _about_initial_values(mbs, t, _turns_of(contacts), states)
     finally:
         for (state, accelerations), configuration in zip(before, configurations, strict=True):
             data.SetSystemState(state, configuration)
@@ -176,7 +187,7 @@ def linearise(mbs: Any) -> Linearisation:
         data.SetTime(t)
 
 
-def _settle(mbs: Any, t: float, contacts: list[StickingContact]) -> list[list[StickingContact]]:
+def _settle(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> list[list[StickingContact]]:
     """Choose the modes of the contacts; return those that share a load."""
     planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
     choice = ModeChoice(mbs, t, contacts, SlidingSteps(mbs, planar, STEP), STEP)
@@ -207,11 +218,26 @@ def _coordinates(data: Any, contact: StickingContact) -> tuple[FloatArray, Float
     return data.GetODE2Coordinates()[contact.places], data.GetODE2Coordinates_t()[contact.places]
 
 
-def _about_initial_values(mbs: Any, t: float, states: tuple[ContactState, ...]) -> Linearisation:
+def _turns_of(contacts: Sequence[StickingContact]) -> list[tuple[int, NDArray[Any], FloatArray]]:
+    """Return constraints of sliding meshes, their coordinates, and the part of friction in their directions."""
+    return [
+        (law.item, contact.places, -law.slope * law.weights)
+        for contact in contacts
+        if isinstance(law := contact.stick, MeshLaw) and law.slides
+    ]
+
+
+def _about_initial_values(
+    mbs: Any,
+    t: float,
+    turns: Sequence[tuple[int, NDArray[Any], FloatArray]],
+    states: tuple[ContactState, ...],
+) -> Linearisation:
     data = mbs.systemData
     mass, stiffness, damping = matrices_of_model(mbs, t)
     if not data.AEsize():
-        return Linearisation(t, mass, damping, stiffness, np.zeros((0, len(mass))), states)
+        none = np.zeros((0, len(mass)))
+        return Linearisation(t, mass, damping, stiffness, none, none, states)
     dynamics, q = Dynamics(mbs, t, STEP), data.GetODE2Coordinates()
     forces = data.GetAECoordinates(exu.ConfigurationType.Initial)
 
@@ -223,5 +249,8 @@ def _about_initial_values(mbs: Any, t: float, states: tuple[ContactState, ...]) 
     for i, change in enumerate(TURN * np.eye(len(q))):
         turned = (gradients(q + change) - gradients(q - change)) / (2.0 * TURN)
         stiffness[:, i] += turned.T @ forces
-    active = gradients(q)
-    return Linearisation(t, mass, damping, stiffness, active[active.any(axis=1)], states)
+    constraints = gradients(q)
+    reactions, active = constraints.copy(), constraints.any(axis=1)
+    for item, places, turn in turns:
+        reactions[data.GetObjectLTGAE(item)[0], places] += turn
+    return Linearisation(t, mass, damping, stiffness, constraints[active], reactions[active], states)

@@ -42,9 +42,10 @@ Share = Callable[[float, bool], float]
 
 @dataclass(eq=False)
 class RotaryLaw(RowLaw):
-    """Law of rotors with the constant ``weights`` of their speeds in the slip, shape (n,)."""
+    """Law of rotors with constant ``weights`` of their speeds in the slip, shape (n,), in a model with ``data``."""
 
     weights: FloatArray
+    data: Any
     locks: tuple[int, ...] = ()
     mode: Mode | None = None
     entered: tuple[Any, ...] = ()
@@ -62,6 +63,10 @@ class RotaryLaw(RowLaw):
         """Return the weights."""
         weights: Floats = self.weights.tolist()
         return weights
+
+    def multipliers(self) -> FloatArray:
+        """Return the present forces of all constraints, shape (m,)."""
+        return np.asarray(self.data.GetAECoordinates(), float)
 
     def twist(self, q: Floats | FloatArray) -> float:
         """Return the angle of the slip in rad; ``q`` excludes reference values."""
@@ -96,8 +101,6 @@ class RotaryLaw(RowLaw):
 class OneWayLaw(RotaryLaw):
     """A one-way clutch: the slip is free forward, and locked backward by any moment >= 0."""
 
-    multipliers: Callable[[], FloatArray] = field(kw_only=True)
-
     def limits(self, t: float) -> tuple[float, float]:
         """Return the limits in N m; the second one exceeds all present moments."""
         self.largest = max(self.largest, ABOVE * float(np.abs(self.multipliers()).max(initial=0.0)), 1.0)
@@ -112,17 +115,28 @@ class OneWayLaw(RotaryLaw):
 class MeshLaw(RotaryLaw):
     """Friction of a mesh with the constraint ``item``, whose gradient is ``constraint``, shape (n,).
 
-    ``preload`` in N m and ``share`` determine its limit. ``shifts`` returns the change of T at rest by contacts that
-    share the load and are not constraints themselves.
+    ``preload`` in N m and ``share`` determine its limit, always zero if the mesh is ``lossless``. ``shifts`` returns
+    the change of T at rest by contacts that share the load and are not constraints themselves.
     """
 
     constraint: FloatArray = field(kw_only=True)
+    lossless: bool = field(kw_only=True)
     item: int = -1
     preload: float = field(kw_only=True)
     share: Share = field(kw_only=True)
     meshes: Meshes | None = None
     place: int = 0
     shifts: Callable[[], float] | None = None
+
+    @property
+    def constraints(self) -> tuple[int, ...]:
+        """Object numbers of the lock, if there is friction, and of the constraint of the mesh."""
+        return *self.locks, self.item
+
+    def use(self, constraints: Sequence[int]) -> None:
+        """Stick by the constraints with these object numbers."""
+        *locks, self.item = constraints
+        self.locks = tuple(locks)
 
     def limit(self, load: float, direction: int) -> float:
         """Return the largest friction in N m against a slip in a direction, ±1, at a moment T in N m."""
@@ -135,8 +149,16 @@ class MeshLaw(RotaryLaw):
         return self._load + shift
 
     @property
+    def slope(self) -> float:
+        """Present friction in slip against T, without preload."""
+        load, direction = self.load, int(self.mode or 0)
+        return direction * self.share(abs(load), load * direction < 0.0) * (1.0 if load >= 0.0 else -1.0)
+
+    @property
     def _load(self) -> float:
-        return float(self.meshes.now()[0][self.place]) if self.meshes else 0.0
+        if self.meshes is None:
+            return -float(self.multipliers()[self.data.GetObjectLTGAE(self.item)[0]])
+        return float(self.meshes.now()[0][self.place])
 
     def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
         """Return T and the friction in N m."""
@@ -171,6 +193,8 @@ class MeshLaw(RotaryLaw):
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         """Return the moments on the nodes: friction, and the change of T that friction causes."""
+        if self.lossless:
+            return [0.0] * len(q)
         self.check_running()
         if self.meshes is None:
             return [0.0] * len(q)

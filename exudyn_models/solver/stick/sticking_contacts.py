@@ -15,7 +15,7 @@ from exudyn_models.solver.contacts import laws_of
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import LEAST as UNLOADED
-from exudyn_models.solver.rows.laws import RotaryLaw
+from exudyn_models.solver.rows.laws import MeshLaw, RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
@@ -304,6 +304,7 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
     contacts = [
         StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, law in laws_of(mbs).items()
+        if not (isinstance(law, MeshLaw) and law.lossless)
     ]
     # Powers keep periodic motions from vanishing at all of these times.
     _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)

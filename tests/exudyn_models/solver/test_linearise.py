@@ -20,7 +20,7 @@ from free_bodies import (
     rotor,
 )
 
-from exudyn_models import add_ring_friction, linearise
+from exudyn_models import add_gear, add_ring_friction, linearise
 from exudyn_models.forces.axial_pairs import Mode
 
 
@@ -142,6 +142,19 @@ def test_falling_friction_makes_a_sliding_mass_unstable():
     unstable = found.eigenvalues[found.eigenvalues.real > 0.1]
     assert unstable.real == pytest.approx([1.0, 1.0], rel=1e-8)
     assert abs(unstable[0]) == pytest.approx(20.0, rel=1e-8)
+
+
+@pytest.mark.parametrize(("moment", "efficiency"), [(50.0, 0.8), (-50.0, 1.0 / 0.6)])
+def test_a_gear_with_losses_passes_on_a_share_of_spring_and_inertia(moment, efficiency):
+    """The first of two rotors of 1 and 0.5 kg m² drives a spring, or is driven by it through η' = 0.6."""
+    mbs = new_model()
+    first, second = rotor(mbs, 1.0, 2.0), rotor(mbs, 0.5, 1.0)
+    add_gear(mbs, first, second, ratio=2.0, efficiency=(0.8, 0.6))
+    spring(mbs, None, second, 300.0)
+    drive(mbs, first, moment)
+    reflected = 4.0 * efficiency
+    frequency = math.sqrt(300.0 / reflected / (1.0 + 0.5 / reflected))
+    assert linearise(mbs).eigenvalues.imag == pytest.approx([-frequency, frequency], rel=1e-10)
 
 
 def test_a_pendulum_has_the_stiffness_of_its_weight_until_its_dry_pivot_locks():

@@ -6,7 +6,7 @@ import exudyn as exu
 import numpy as np
 import pytest
 from exact_couplings import Couplings, Friction, Mesh, OneWay, exact_motion_of
-from free_bodies import changes_of, drive, new_model, planar_body, rate_of, rotor, settings_of
+from free_bodies import changes_of, drive, items, new_model, planar_body, rate_of, rotor, settings_of
 from scipy.optimize import brentq
 from test_random_trains import locks, random_moment
 
@@ -285,6 +285,34 @@ def test_invalid_gears_are_refused(arguments, message):
         add_gear(mbs, rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0), **arguments)
 
 
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_a_gear_without_losses_is_a_constraint_that_reverses_without_a_change_of_mode(solver):
+    mbs = new_model()
+    first, second = rotor(mbs, 1.0, -1.0), rotor(mbs, 0.5, 0.5)
+    gear = add_gear(mbs, first, second, ratio=-2.0)
+    moment = gear.add_sensor("moment")
+    drive(mbs, second, -4.0)
+    assert changes_of(mbs, 1.0, STEP, solver) == []
+    speed = 0.5 - 4.0 / (0.5 + 4.0 * 1.0)
+    assert (rate_of(mbs, first), rate_of(mbs, second)) == pytest.approx((-2.0 * speed, speed), rel=1e-9)
+    assert float(mbs.GetSensorValues(moment)) == pytest.approx(2.0 * 4.0 / 4.5, rel=1e-6)
+
+
+def test_a_gear_keeps_its_losses_after_an_object_before_it_is_deleted():
+    mbs = new_model()
+    spare = mbs.AddObject(items.ObjectGround())
+    rotors = [rotor(mbs, inertia, 0.0) for inertia in (1.0, 0.5)]
+    gear = add_gear(mbs, *rotors, ratio=2.0, efficiency=0.8)
+    moment = gear.add_sensor("moment")
+    drive(mbs, rotors[0], 3.0)
+    mbs.DeleteObject(int(spare), deleteDependentItems=False)
+    mbs.Assemble()
+    changes_of(mbs, 1.0, STEP)
+    speed = 3.0 / (1.0 + 0.5 / (4.0 * 0.8))
+    assert rate_of(mbs, rotors[0]) == pytest.approx(speed, rel=1e-9)
+    assert float(mbs.GetSensorValues(moment)) == pytest.approx(-0.125 * speed, rel=1e-9)
+
+
 def test_rotors_must_be_different_and_solve_dynamic_must_run_them():
     mbs = new_model()
     one, body = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
@@ -294,7 +322,7 @@ def test_rotors_must_be_different_and_solve_dynamic_must_run_them():
         add_one_way_clutch(mbs, one, body)
     with pytest.raises(ValueError, match=r"preload = -1: it must be >= 0"):
         add_differential(mbs, one, rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0), preload=-1.0)
-    add_gear(mbs, one, None, ratio=1.0)
+    add_gear(mbs, one, None, ratio=1.0, efficiency=0.9)
     mbs.Assemble()
     with pytest.raises(exu.ExudynError, match=r"needs exudyn_models\.solve_dynamic"):
         mbs.SolveDynamic(settings_of(0.1, 10), IMPLICIT[0])
