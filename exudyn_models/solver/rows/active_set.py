@@ -1,8 +1,9 @@
 """Forces of rows at rest or in slip whose limits may be infinite, or grow with the moments of meshes.
 
 The slip accelerations are r = g + A·f, and the moments of the meshes T = T₀ + W·f. Each row has r = 0 within its
-limits, or f at a limit against r. All rows change their states together until every row agrees with its state; if
-that repeats itself, only the first one that disagrees changes (K. G. Murty, Mathematical Programming 7 (1974) 231).
+limits, or f at a limit against r. All rows change their states together until every row agrees with its state. If
+that takes too long, only the first one that disagrees changes, which always ends without meshes (K. G. Murty,
+Mathematical Programming 7 (1974) 231). With meshes, random states follow.
 """
 
 from collections.abc import Sequence
@@ -18,8 +19,8 @@ from reference_model.trajectory import SimulationError
 REGULAR = 1e-12
 """Relative compliance that makes the forces of redundant rows unique."""
 
-TOGETHER, MOST = 20, 2000
-"""Number of iterations that change all rows together, and of all."""
+TOGETHER, MOST = 20, 4000
+"""Number of iterations that change all rows together from the same start, and of all."""
 
 CLOSE = 1e-11
 """Relative tolerance of forces, moments and slip accelerations."""
@@ -47,9 +48,13 @@ class LoadedRows:
 
         ``limits``, shape (k, 2), are those of rows without a mesh against slip forward and backward.
         """
-        states, power = self.pinned.copy(), self.loads
+        states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
+        meshes = any(law is not None for law in self.laws)
         matrix = to_rates + np.diag(REGULAR * np.where(np.diag(to_rates) > 0.0, np.diag(to_rates), 1.0))
         for tried in range(MOST):
+            if meshes and tried and tried % TOGETHER == 0:
+                states = np.where(self.pinned != 0, self.pinned, random.integers(-1, 2, len(states)))
+                states[np.isinf(limits[:, 1]) & (states < 0)] = 0
             forces, power = self._at(states, power, matrix, rates, limits)
             left = rates + to_rates @ forces
             now = self._limits(power, limits)
@@ -64,7 +69,7 @@ class LoadedRows:
             wrong = np.flatnonzero(wanted != states)
             if not len(wrong):
                 return forces, left
-            changed = wrong if tried < TOGETHER else wrong[:1]
+            changed = wrong if meshes or tried < TOGETHER else wrong[:1]
             states[changed] = wanted[changed]
         raise SimulationError("found no forces of gears and contacts that satisfy their laws: a gear jams")
 

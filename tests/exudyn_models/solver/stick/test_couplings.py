@@ -1,5 +1,6 @@
 """Gears with losses, differentials and one-way clutches, against closed forms and the exact solver."""
 
+import math
 from itertools import pairwise
 
 import exudyn as exu
@@ -218,6 +219,20 @@ def test_two_gears_in_a_row_release_at_the_moment_that_both_efficiencies_require
     assert raised == [(pytest.approx(1.0, abs=1e-9), 0, 1)] * 2
     lowered = release((0.5, 0.4), lambda t: 1.0 - t)  # 10·0.4²/4
     assert lowered == [(pytest.approx(0.6, abs=1e-9), 0, -1)] * 2
+
+
+def test_a_gear_that_locks_itself_releases_a_one_way_clutch_and_a_brake_behind_it():
+    """The gear rests alone until 0.1 of its moment drives it. Then the brake slips too, because the clutch locks."""
+    mbs = new_model()
+    first, second, third = (rotor(mbs, inertia, 0.0) for inertia in (1.0, 0.5, 0.3))
+    gear = add_gear(mbs, first, second, ratio=2.0, efficiency=(0.7, -0.1))
+    add_one_way_clutch(mbs, second, third)
+    brake = add_ring_friction(mbs, None, third, contact_radius=1.0, friction_coefficient=1.0, normal_load=0.5)
+    drive(mbs, first, lambda t: 6.0 * math.sin(9.0 * t))
+    drive(mbs, second, 3.0)
+    changes = changes_of(mbs, 0.1, STEP)
+    release = pytest.approx(math.asin(0.15 / 6.0) / 9.0, abs=TIMES)
+    assert changes == [(release, int(part.item), 0, 1) for part in (gear, brake)]
 
 
 def test_a_one_way_clutch_does_not_fight_a_friction_clutch_beside_it():
