@@ -84,7 +84,8 @@ def solve_dynamic(
     Raises
     ------
     ValueError
-        If the solver is explicit and the model has algebraic constraints, or ``breaks`` or ``sampled`` are invalid.
+        If the solver is explicit and the model has constraints, if ``breaks`` or ``sampled`` are invalid, or if a
+        contact in the plane that sticks exactly accompanies a gear with losses or a one-way clutch.
     SimulationError
         If a step does not converge, a matrix is singular, a state is not finite, or DOPRI5 would need too many steps.
     exudyn.ExudynError

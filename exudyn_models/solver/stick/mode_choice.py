@@ -245,7 +245,7 @@ class ModeChoice:
         constraints: FloatArray,
         reduction: FloatArray,
     ) -> LoadedRows | None:
-        if not (self._at_meshes or self._one_way) or self._planar:
+        if not (self._at_meshes or self._one_way):
             return None
         laws = [self._contacts[i].stick for i in contacts]
         return LoadedRows(

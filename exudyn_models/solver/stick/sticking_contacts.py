@@ -300,6 +300,7 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
     """Return the contacts of a model that stick exactly in a run between two times (s), and springs after them.
 
     Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
+    Raises ``ValueError`` if a contact in the plane accompanies a gear with losses or a one-way clutch.
     """
     contacts = [
         StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)))
@@ -313,6 +314,12 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
         for contact in contacts
         for part in contact.stick.active
     ]
+    planar = next((contact for contact in found if isinstance(contact, PlanarContact)), None)
+    if planar is not None and any(isinstance(contact, RotorCoupling) for contact in found):
+        raise ValueError(
+            f"object {planar.item}: a contact in the plane that sticks exactly cannot be combined with a gear with "
+            "losses or a one-way clutch; give the contact a regularisation, or hold it on one axis by joints"
+        )
     return sorted(found, key=lambda contact: isinstance(contact, SpringFlanks))
 
 

@@ -339,5 +339,8 @@ def test_rotors_must_be_different_and_solve_dynamic_must_run_them():
         add_differential(mbs, one, rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0), preload=-1.0)
     add_gear(mbs, one, None, ratio=1.0, efficiency=0.9)
     mbs.Assemble()
+    add_ring_friction(mbs, None, body, contact_radius=0.1, friction_coefficient=0.3, normal_load=5.0)
+    with pytest.raises(ValueError, match="a contact in the plane that sticks exactly cannot be combined"):
+        changes_of(mbs, 0.1, STEP)
     with pytest.raises(exu.ExudynError, match=r"needs exudyn_models\.solve_dynamic"):
         mbs.SolveDynamic(settings_of(0.1, 10), IMPLICIT[0])
