@@ -25,30 +25,44 @@ from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.native_contact import add_native_friction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.parts.rotational.couplings import RotorCoupling
+from exudyn_models.parts.rotational.gears import add_differential, add_gear, add_planetary
+from exudyn_models.parts.rotational.one_way_clutch import add_one_way_clutch
+from exudyn_models.parts.rotational.torsional_spring import add_torsional_spring
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
+from exudyn_models.solver.linear.locked_state import ContactState, Linearisation, linearise
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.step_limit import largest_stable_step
 from exudyn_models.solver.stick.sticking_contacts import ModeChange
 
 __all__ = [
     "PASSENGER_CAR",
+    "ContactState",
     "Drivetrain",
     "DrivetrainModel",
     "EnergyBalance",
+    "Linearisation",
     "ModeChange",
     "RadialSupport",
     "RingFriction",
+    "RotorCoupling",
     "ThermalNode",
+    "add_differential",
     "add_energy_balance",
+    "add_gear",
     "add_native_friction",
+    "add_one_way_clutch",
+    "add_planetary",
     "add_radial_support",
     "add_ring_friction",
     "add_thermal_node",
+    "add_torsional_spring",
     "build_drivetrain",
     "build_model",
     "eigenvalues",
     "four_cylinder",
     "largest_stable_step",
+    "linearise",
     "simulate",
     "simulate_fixed_step",
     "simulate_with_native_contact",

@@ -54,9 +54,13 @@ TASKS = {
         ),
         *("exudyn_models.add_radial_support", "exudyn_models.RadialSupport"),
         *("exudyn_models.add_thermal_node", "exudyn_models.ThermalNode"),
+        *("exudyn_models.add_gear", "exudyn_models.add_planetary", "exudyn_models.add_differential"),
+        *("exudyn_models.add_one_way_clutch", "exudyn_models.add_torsional_spring"),
+        "exudyn_models.RotorCoupling",
     ),
     "Run an Exudyn model": (
         *("exudyn_models.solve_dynamic", "exudyn_models.ModeChange", "exudyn_models.largest_stable_step"),
+        *("exudyn_models.linearise", "exudyn_models.Linearisation", "exudyn_models.ContactState"),
         *("exudyn_models.eigenvalues", "exudyn_models.build_model"),
         "exudyn_models.simulate_with_native_contact",
     ),

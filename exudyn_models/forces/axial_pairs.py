@@ -138,17 +138,145 @@ class Mode(IntEnum):
 SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 
 
-@dataclass(eq=False)
-class AxialStick:
-    """Friction between two bodies that turn about one axis, in one mode at a time.
+class RowLaw:
+    """Set-valued law of a force f along the gradient of one slip s, in one mode at a time.
 
-    ``reference``, shape (n,), contains the reference coordinates of both nodes, ``static_ratio`` is static divided by
+    The force stays between two limits. At rest it may have any value within them, and otherwise it is at the limit
+    against the slip. The limits may be equal (a clutch), zero and infinite (a one-way clutch), or grow with the force
+    of a constraint (a gear with losses).
+
+    ``reference``, shape (n,), contains the reference coordinates of the nodes, ``static_ratio`` is static divided by
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``point`` is the number of
     a point, from 1, of a contact at several points. ``on_axis`` is False if the bodies can slide sideways.
     ``largest`` is the largest friction in the run, and ``entered`` the mode and the
     held directions that Exudyn knows. ``holds`` returns the forces of a contact at rest along its locks.
     """
+
+    reference: FloatArray
+    static_ratio: float
+    locks: tuple[int, ...]
+    mode: Mode | None
+    entered: tuple[Any, ...]
+    running: bool
+    point: int | None
+    on_axis: bool
+    largest: float
+    holds: Callable[[], FloatArray] | None
+
+    @property
+    def parts(self) -> Sequence[RowLaw]:
+        """Laws with own locks: this one, or those of several points."""
+        return (self,)
+
+    @property
+    def active(self) -> Sequence[RowLaw]:
+        """Parts that stick and slide in this model."""
+        return self.parts
+
+    @property
+    def constraints(self) -> tuple[int, ...]:
+        """Object numbers of all constraints of the law."""
+        return self.locks
+
+    def use(self, constraints: Sequence[int]) -> None:
+        """Stick by the constraints with these object numbers."""
+        self.locks = tuple(constraints)
+
+    @property
+    def visible_mode(self) -> Mode:
+        """Mode that a sensor shows."""
+        return Mode.LOCKED if self.mode is None else self.mode
+
+    def gradient(self, q: Floats | FloatArray) -> Floats:
+        """Return the derivatives of s with respect to the nodes' velocities; ``q`` excludes reference values."""
+        raise NotImplementedError
+
+    def limits(self, t: float) -> tuple[float, float]:
+        """Return the largest moments in N m of a locked contact against sliding forward and backward."""
+        raise NotImplementedError
+
+    def moment(self, t: float, spin: float) -> float:
+        """Return the moment f in N m in slip, without that of the constraint."""
+        raise NotImplementedError
+
+    def rows(self, coordinates: FloatArray) -> FloatArray:
+        """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""
+        return np.array([self.gradient(coordinates)])
+
+    def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
+        """Return the rates of the locked slips without accelerations, shape (k,)."""
+        return np.zeros(1)
+
+    def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
+        """Return s in rad/s."""
+        return float(np.dot(self.gradient(q), q_t))
+
+    def without_rounding(self, friction: float) -> float:
+        """Return ``friction``, or zero if it is a rounding error of the largest friction so far."""
+        self.largest = max(self.largest, friction)
+        return friction if friction > ROUNDING * self.largest else 0.0
+
+    @property
+    def constant_forces(self) -> FloatArray | None:
+        """Moments on the nodes in N m in the present mode, or None if they vary."""
+        return None
+
+    @property
+    def slides(self) -> bool:
+        """True if the contact slides under a load."""
+        return self.mode in SLIDING
+
+    def held_forces(self) -> FloatArray:
+        """Return the forces of a contact at rest along its locks, shape (k,)."""
+        return self.holds() if self.holds is not None else np.zeros(1)
+
+    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
+        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
+        moment = float(self.held_forces()[0]) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
+        return np.array([0.0, 0.0, moment])
+
+    def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
+        """Return moment divided by capacity: 1 while the contact slides, 0 while it is open."""
+        if self.mode == Mode.LOCKED:
+            held = float(self.held_forces()[0])
+            return abs(held) / max(self.limits(t)[held > 0.0], FREE * max(self.limits(t)))
+        return 1.0 if self.slides else 0.0
+
+    def check_running(self) -> None:
+        """Raise ``ValueError`` unless ``solve_dynamic`` switches modes."""
+        if not self.running:
+            raise ValueError(
+                "a contact without regularisation sticks exactly, which needs exudyn_models.solve_dynamic; "
+                "give add_ring_friction a regularisation for any other solver"
+            )
+
+    def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        """Return the moments on the nodes (user function of the connector)."""
+        self.check_running()
+        if not self.slides:
+            return [0.0] * len(q)
+        gradient = self.gradient(q)
+        moment = self.moment(t, sum(map(mul, gradient, q_t)))
+        return [moment * share for share in gradient]
+
+    def jacobian(
+        self,
+        mbs: Any,
+        t: float,
+        item: int,
+        q: Sequence[float],
+        q_t: Sequence[float],
+        position_factor: float,
+        velocity_factor: float,
+    ) -> FloatArray:
+        """Return the derivatives of minus the moments (user function of the connector)."""
+        return np.zeros((len(q), len(q)))
+
+
+@dataclass(eq=False)
+class AxialStick(RowLaw):
+    """Friction between two bodies that turn about one axis, in one mode at a time."""
 
     kinds: Kinds
     reference: FloatArray
@@ -163,43 +291,12 @@ class AxialStick:
     largest: float = 0.0
     holds: Callable[[], FloatArray] | None = None
 
-    @property
-    def parts(self) -> Sequence[AxialStick]:
-        """Laws with own locks: this one, or those of several points."""
-        return (self,)
-
-    @property
-    def active(self) -> Sequence[AxialStick]:
-        """Parts that stick and slide in this model."""
-        return self.parts
-
-    def use(self, locks: Sequence[int]) -> None:
-        """Stick by the constraints with these object numbers."""
-        self.locks = tuple(locks)
-
     def renew(self) -> None:
         """Use the present load and coefficient; nothing to do here, because every call reads them."""
-
-    @property
-    def visible_mode(self) -> Mode:
-        """Mode that a sensor shows."""
-        return Mode.LOCKED if self.mode is None else self.mode
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
         """Return the derivatives of S with respect to the nodes' velocities; ``q`` excludes reference values."""
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
-
-    def rows(self, coordinates: FloatArray) -> FloatArray:
-        """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""
-        return np.array([self.gradient(coordinates)])
-
-    def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
-        """Return the rates of the locked slips without accelerations, shape (k,)."""
-        return np.zeros(1)
-
-    def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
-        """Return S = φ̇ − ω in rad/s."""
-        return float(np.dot(self.gradient(q), q_t))
 
     @cached_property
     def mean_radius(self) -> float:
@@ -223,11 +320,6 @@ class AxialStick:
             return forward, forward
         return forward, self.static_ratio * self.sliding_moment(t, -AT_REST)
 
-    def without_rounding(self, friction: float) -> float:
-        """Return ``friction``, or zero if it is a rounding error of the largest friction so far."""
-        self.largest = max(self.largest, friction)
-        return friction if friction > ROUNDING * self.largest else 0.0
-
     @property
     def constant_forces(self) -> FloatArray | None:
         """Moments on the nodes in N m in the present mode, or None if they vary."""
@@ -235,46 +327,12 @@ class AxialStick:
             return None
         return self.moment(0.0, 0.0) * np.array(self.gradient([]))
 
-    @property
-    def slides(self) -> bool:
-        """True if the contact slides under a load."""
-        return self.mode in SLIDING
-
     def moment(self, t: float, spin: float) -> float:
         """Return the moment in N m on the disc, without that of the constraint."""
         if not self.slides:
             return 0.0
         direction = int(self.mode or 0)
         return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
-
-    def held_forces(self) -> FloatArray:
-        """Return the forces of a contact at rest along its locks, shape (k,)."""
-        return self.holds() if self.holds is not None else np.zeros(1)
-
-    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
-        moment = float(self.held_forces()[0]) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
-        return np.array([0.0, 0.0, moment])
-
-    def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
-        """Return moment divided by capacity: 1 while the contact slides, 0 while it is open."""
-        if self.mode == Mode.LOCKED:
-            held = float(self.held_forces()[0])
-            return abs(held) / max(self.limits(t)[held > 0.0], FREE * max(self.limits(t)))
-        return 1.0 if self.slides else 0.0
-
-    def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        """Return the moments on the nodes (user function of the connector)."""
-        if not self.running:
-            raise ValueError(
-                "a contact without regularisation sticks exactly, which needs exudyn_models.solve_dynamic; "
-                "give add_ring_friction a regularisation for any other solver"
-            )
-        if not self.slides:
-            return [0.0] * len(q)
-        gradient = self.gradient(q)
-        moment = self.moment(t, sum(map(mul, gradient, q_t)))
-        return [moment * share for share in gradient]
 
     def jacobian(
         self,

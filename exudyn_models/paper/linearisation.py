@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.model import build_model
-from exudyn_models.solver.linear_matrices import state_matrix
+from exudyn_models.solver.linear.matrices import state_matrix
 from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
 
 REGULARISATION = 1e-12

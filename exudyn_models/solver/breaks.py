@@ -1,13 +1,13 @@
-"""Runs that stop where a load jumps and then continue."""
+"""Runs that stop where a load jumps, or where a controller takes a sample, and then continue."""
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
-from reference_model.systems import finite_numbers, shown
+from reference_model.systems import finite_numbers, positive_number, require_callable, require_kind, shown
 
 GAP = 1e-13
 """Share of the run's duration omitted beside a break, so that no step sees both sides."""
@@ -28,6 +28,46 @@ def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
         if value <= before:
             raise ValueError(f"breaks[{i}] = {value:g} s: it must be later than {before:g} s, the one before")
     return result
+
+
+Controller = Callable[[Any, float], object]
+"""Function of ``mbs`` and the time in s that reads sensors and sets loads."""
+
+TOGETHER = 1e-9
+"""Largest distance of two breaks that count as one, as a share of the run."""
+
+
+def with_samples(
+    breaks: Sequence[float], sampled: Mapping[float, Controller], options: Any
+) -> dict[float, list[Controller]]:
+    """Return the functions to call at the start of the run and at all breaks, by increasing time in s.
+
+    Raises ``ValueError`` if a period is not > 0, or ``TypeError`` if a function has other arguments.
+    """
+    require_kind("sampled", sampled, Mapping)
+    start, end = options.startTime, options.endTime
+    calls: list[tuple[float, Controller | None]] = [(start, None), *((time, None) for time in breaks)]
+    for period, function in sampled.items():
+        period = positive_number("sampled", period, "s")
+        require_callable(f"sampled[{period:g}]", function, "mbs", "t")
+        count = math.ceil((end - start) / period * (1.0 - TOGETHER))
+        calls += [(start + k * period, function) for k in range(count)]
+    result: dict[float, list[Controller]] = {}
+    last = -math.inf
+    for time, call in sorted(calls, key=lambda pair: pair[0]):
+        if time - last > TOGETHER * (end - start):
+            last = time
+        result.setdefault(last, []).extend([] if call is None else [call])
+    return result
+
+
+def take_samples(mbs: Any, t: float, functions: Sequence[Controller]) -> None:
+    """Call functions with the initial values as the present state."""
+    if functions:
+        mbs.systemData.SetSystemState(mbs.systemData.GetSystemState(exu.ConfigurationType.Initial))
+        mbs.systemData.SetTime(t)
+    for function in functions:
+        function(mbs, t)
 
 
 def parts_of_run(

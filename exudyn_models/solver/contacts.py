@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import AxialStick
+from exudyn_models.forces.axial_pairs import AxialStick, RowLaw
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import Kinds
 from exudyn_models.forces.stick_dampers import StickDampers
@@ -37,8 +37,23 @@ class Connector:
         self.power = None
 
 
+class Lockable(Connector):
+    """A connector whose directions of slip constraints may lock."""
+
+    def lock_name(self, direction: int) -> str:
+        """Return the name of the constraint that locks a direction of slip."""
+        return f"{self.name}, lock {direction}"
+
+
 @dataclass(eq=False)
-class Contact(Connector):
+class Coupling(Lockable):
+    """A part between rotors, such as a gear or a one-way clutch."""
+
+    stick: RowLaw
+
+
+@dataclass(eq=False)
+class Contact(Lockable):
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
@@ -57,13 +72,9 @@ class Contact(Connector):
         """Equivalent dampers while a regularised contact sticks."""
         return StickDampers(self.kinds, self.reference, self.factors)
 
-    def lock_name(self, direction: int) -> str:
-        """Return the name of the constraint that locks a direction of slip."""
-        return f"{self.name}, lock {direction}"
 
-
-def register(mbs: Any, contact: Contact) -> None:
-    """Store a contact in its model, and choose the name of its connector."""
+def register(mbs: Any, contact: Contact | Coupling) -> None:
+    """Store a contact or coupling in its model, and choose the name of its connector."""
     known = mbs.sys.setdefault(_CONTACTS, {})
     contact.name = f"friction contact {len(known)}"
     known[contact.name] = contact
@@ -102,7 +113,16 @@ def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> 
 
 def contacts_of(mbs: Any) -> dict[int, Contact]:
     """Return the contacts of a model by the present object numbers of their connectors."""
-    known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
+    return {item: contact for item, contact in _known(mbs).items() if isinstance(contact, Contact)}
+
+
+def laws_of(mbs: Any) -> dict[int, RowLaw]:
+    """Return the laws of contacts with exact stick and of couplings, by the numbers of their connectors."""
+    return {item: contact.stick for item, contact in _known(mbs).items() if contact.stick is not None}
+
+
+def _known(mbs: Any) -> dict[int, Contact | Coupling]:
+    known: dict[str, Contact | Coupling] = mbs.sys.get(_CONTACTS, {})
     numbers = _numbers(mbs) if known else {}
     return {numbers[name]: contact for name, contact in known.items() if name in numbers}
 
@@ -112,16 +132,16 @@ def find_again(mbs: Any) -> None:
 
     Raises ``ValueError`` if a contact has lost its locks.
     """
-    contacts: list[Contact] = list(mbs.sys.get(_CONTACTS, {}).values())
+    contacts: list[Contact | Coupling] = list(mbs.sys.get(_CONTACTS, {}).values())
     numbers = _numbers(mbs) if contacts else {}
     for contact in contacts:
         if contact.stick is None or contact.name not in numbers:
             continue
-        names = [contact.lock_name(direction) for direction in range(len(contact.stick.locks))]
+        names = [contact.lock_name(direction) for direction in range(len(contact.stick.constraints))]
         if not numbers.keys() >= set(names):
             raise ValueError(
                 f"object {numbers[contact.name]}, {contact.name!r}: constraints that let it stick exactly were "
-                "deleted; delete the contact as well, or keep the objects that add_ring_friction has added"
+                "deleted; delete the contact as well, or keep the objects that its function has added"
             )
         contact.stick.use([numbers[name] for name in names])
 

@@ -74,11 +74,15 @@ class JumpCheck:
                 (float(times[first]), float(times[first + 1]), int(i), float(changes[first, i]))
             )
 
-    def warn(self) -> None:
-        """Warn about the largest jump, if any."""
+    def warn(self, changes: Sequence[float] = ()) -> None:
+        """Warn about the largest jump, if any, except in steps with ``changes`` of mode, at times in s."""
         if self._times:
             self._find()
-        jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest]
+        jumps = [
+            jump
+            for jump in self._jumps
+            if jump[3] > LEAST * self._largest and not any(jump[0] <= t <= jump[1] for t in changes)
+        ]
         if not jumps:
             return
         start, end, power, size = max(jumps, key=lambda jump: jump[3])

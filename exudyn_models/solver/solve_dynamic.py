@@ -15,17 +15,24 @@
 
 import copy
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
+from types import MappingProxyType
 from typing import Any
 
 import exudyn as exu
 
 from exudyn_models.forces.axial_pairs import Mode
-from exudyn_models.solver.breaks import checked_breaks, parts_of_run
+from exudyn_models.solver.breaks import (
+    Controller,
+    checked_breaks,
+    parts_of_run,
+    take_samples,
+    with_samples,
+)
 from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.jumps import JumpCheck
-from exudyn_models.solver.linear_matrices import singular_mass
+from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
@@ -51,6 +58,7 @@ def solve_dynamic(
     updateInitialValues: bool = False,
     *,
     breaks: Sequence[float] = (),
+    sampled: Mapping[float, Controller] = MappingProxyType({}),
 ) -> list[ModeChange]:
     """Run ``mbs.SolveDynamic`` with the same arguments and the checks and repairs of this module.
 
@@ -64,6 +72,9 @@ def solve_dynamic(
         Whether the next run continues from the end of this one.
     breaks : sequence of float
         Increasing times in s within the run when a load, a coefficient or another function jumps.
+    sampled : dict of float and callable
+        Controllers by their period in s: functions of ``mbs`` and the time in s, called once at each sample. They
+        read sensors, and set loads with ``mbs.SetLoadParameter`` or a contact's ``change``.
 
     Returns
     -------
@@ -73,7 +84,8 @@ def solve_dynamic(
     Raises
     ------
     ValueError
-        If the solver is explicit and the model has algebraic constraints, or ``breaks`` are invalid.
+        If the solver is explicit and the model has constraints, if ``breaks`` or ``sampled`` are invalid, or if a
+        contact in the plane that sticks exactly accompanies a gear with losses or a one-way clutch.
     SimulationError
         If a step does not converge, a matrix is singular, a state is not finite, or DOPRI5 would need too many steps.
     exudyn.ExudynError
@@ -89,13 +101,14 @@ def solve_dynamic(
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     _check_constraints(mbs, solver)
-    times = checked_breaks(breaks, simulationSettings.timeIntegration)
-    find_again(mbs)
     options, changes = simulationSettings.timeIntegration, list[ModeChange]()
+    calls = with_samples(checked_breaks(breaks, options), sampled, options)
+    find_again(mbs)
     contacts = sticking_contacts(mbs, options.startTime, options.endTime)
-    with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
+    with closing(parts_of_run(mbs, simulationSettings, list(calls)[1:], updateInitialValues)) as parts:
         modes: list[Mode] = []
-        for goes_on in parts:
+        for goes_on, (t, functions) in zip(parts, calls.items(), strict=False):
+            take_samples(mbs, t, functions)
             changes += _solve(mbs, simulationSettings, solver, goes_on, contacts, modes)
             modes = [contact.stick.visible_mode for contact in contacts]
     return changes
@@ -139,12 +152,12 @@ class _Look:
             self._too_many = self._count.count(t)
         return self._finite and not self._too_many
 
-    def finish(self) -> None:
-        """Raise ``SimulationError`` if a check ended the run; warn about jumps."""
+    def finish(self, changes: Sequence[ModeChange]) -> None:
+        """Raise ``SimulationError`` if a check ended the run; warn about jumps at other times than ``changes``."""
         if not self._finite or self._too_many:
             raise SimulationError(advice(self._solver.name, self.duration, self._too_many or NOT_FINITE))
         if self._jumps is not None:
-            self._jumps.warn()
+            self._jumps.warn([change.time for change in changes])
 
 
 def _solve(
@@ -172,7 +185,7 @@ def _solve(
     except exu.ExudynError as error:
         _raise_cause(error, mbs, solver.name, look.duration)
         raise
-    look.finish()
+    look.finish(changes)
     return changes
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from exudyn_models.forces.stick_dampers import StickDampers
 from exudyn_models.solver.contacts import contacts_of
-from exudyn_models.solver.linear_matrices import matrices_of_model, singular_mass
+from exudyn_models.solver.linear.matrices import matrices_of_model, singular_mass
 from exudyn_models.solver.solver_run import raise_interrupt
 from reference_model.systems import FloatArray, require_kind
 

@@ -33,7 +33,7 @@ from compare.studies.toolkit.drivetrain_bench import (
 )
 from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.parts.friction_sensors import RingFriction
-from exudyn_models.solver import linear_matrices
+from exudyn_models.solver.linear import matrices
 from exudyn_models.solver.stick import resting
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.contact.annulus import Annulus
@@ -152,7 +152,7 @@ def reaction_without_the_arm_of_the_force(patch):
 
         return without_arm
 
-    replaced(linear_matrices, "state_matrix", wrong)(patch)
+    replaced(matrices, "state_matrix", wrong)(patch)
 
 
 def whirling_car_off(**factors):

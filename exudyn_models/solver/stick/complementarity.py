@@ -13,10 +13,8 @@ from itertools import combinations, islice, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from exudyn_models.solver.rows.active_set import LoadedRows, unloaded
 from reference_model.systems import FloatArray
-
-REGULAR = 1e-12
-"""Relative compliance that makes the forces of redundant contacts unique."""
 
 SLIPS = 1e-8
 """Smallest slip acceleration, relative to that of friction alone; less is a rounding error."""
@@ -34,56 +32,20 @@ SMOOTH, CLOSE, ROUNDING = 1e-11, 1e-4, 1e-14
 """Last share of a slip acceleration that smooths friction, and tolerances of forces and of rounding errors."""
 
 
-def bounded_forces(
-    to_rates: FloatArray, rates: FloatArray, low: FloatArray, high: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the forces between ``low`` and ``high``, shape (k,), and the slip accelerations that they leave.
-
-    ``to_rates``, shape (k, k), is A, and ``rates`` is g. An active-set method finds the minimum.
-    """
-    size = np.maximum(np.maximum(np.abs(low), np.abs(high)), np.finfo(float).tiny)
-    matrix, vector = size[:, None] * to_rates * size, size * rates
-    weight = np.maximum(np.diag(matrix), np.abs(vector))
-    weight[weight == 0.0] = 1.0
-    matrix = matrix + np.diag(REGULAR * weight)
-    low, high = low / size, high / size
-    x = np.clip(np.zeros(len(rates)), low, high)
-    free = low < high
-    for _ in range(20 * len(x) + 20):
-        wanted = x.copy()
-        wanted[free] = np.linalg.solve(
-            matrix[np.ix_(free, free)], -(vector + matrix[:, ~free] @ x[~free])[free]
-        )
-        change = wanted - x
-        with np.errstate(divide="ignore", invalid="ignore"):
-            shares = np.where(
-                change > 0.0, (high - x) / change, np.where(change < 0.0, (low - x) / change, np.inf)
-            )
-        first = int(np.argmin(shares)) if len(x) else 0
-        if len(x) and shares[first] < 1.0:
-            x = np.clip(x + max(shares[first], 0.0) * change, low, high)
-            x[first] = high[first] if change[first] > 0.0 else low[first]
-            free[first] = False
-            continue
-        x, slope = wanted, (matrix @ wanted + vector) / weight
-        against = np.where(free | (low == high), 0.0, np.where(x >= high, slope, -slope))
-        if not len(x) or against.max() <= REGULAR:
-            break
-        free[int(np.argmax(against))] = True
-    forces = size * x
-    return forces, rates + to_rates @ forces
-
-
 Law = Callable[[FloatArray], tuple[float, FloatArray, FloatArray]]
 """Support function P of slips at a contact in the plane, its gradient, and P times its second derivatives."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sets:
-    """Sets of friction of contacts: ``blocks`` of rows, and their laws; None is an interval on an axis."""
+    """Sets of friction of contacts: ``blocks`` of rows, and their laws; None is an interval on an axis.
+
+    ``loaded`` is not None if the limits of some rows are infinite or grow with moments.
+    """
 
     blocks: Sequence[slice]
     laws: Sequence[Law | None]
+    loaded: LoadedRows | None = None
 
     def only(self, chosen: Sequence[int]) -> "Sets":
         """Return the sets of chosen contacts, whose rows follow each other."""
@@ -106,7 +68,7 @@ class Sets:
         ``limits``, shape (contacts, 2), are the largest forces against slip forward and backward.
         """
         if not any(self.laws):
-            return bounded_forces(to_rates, rates, -limits[:, 0], limits[:, 1])
+            return (self.loaded or unloaded(len(rates))).forces(to_rates, rates, limits)
         return self._smooth_forces(to_rates, rates, limits)
 
     def _smooth_forces(
@@ -182,12 +144,14 @@ def rest_or_slip(
     """
     count = len(sets.blocks)
     own = [np.linalg.norm(to_rates[rows, rows]) for rows in sets.blocks]
-    least = np.maximum(SLIPS * np.maximum(own * static.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
+    finite = np.where(np.isfinite(static), static, 0.0)
+    least = np.maximum(SLIPS * np.maximum(own * finite.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
 
     def slips(slides: NDArray[np.bool_]) -> tuple[FloatArray, NDArray[np.bool_]]:
         limits = np.where(slides[:, None], sliding, static)
-        _, left = sets.forces(to_rates, rates, limits)
-        moves = sets.sizes(left) > least
+        forces, left = sets.forces(to_rates, rates, limits)
+        sizes = np.array([np.linalg.norm(forces[rows]) for rows in sets.blocks])
+        moves = sets.sizes(left) > np.maximum(least, SLIPS * np.array(own) * sizes)
         return left, moves
 
     slides = np.zeros(count, dtype=bool)

@@ -5,7 +5,9 @@ its acceleration reaches within a millionth of a step, or that Newton's method c
 slip when the contact slides faster.
 """
 
+import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import exudyn as exu
@@ -14,13 +16,15 @@ from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.rows.active_set import LoadedRows
+from exudyn_models.solver.rows.laws import Meshes, MeshLaw, OneWayLaw
 from exudyn_models.solver.stick.complementarity import rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.resting import Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
-from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
+from exudyn_models.solver.stick.sticking_contacts import PlanarContact, SpringFlanks, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -35,6 +39,9 @@ SHRUNK = 1e-6
 
 NEAR = 0.02
 """Unused share of capacity below which loads are computed again, because those of Exudyn's steps contain errors."""
+
+AHEAD = 1e-9
+"""Share of a step to look ahead for the flank of a spring that is pressed."""
 
 GROWN = 10.0
 """Least slip for ``take_back``, relative to the first slip."""
@@ -54,9 +61,14 @@ class ModeChoice:
         slides: SlidingSteps,
         step: float,
     ) -> None:
+        self._springs = [contact for contact in contacts if isinstance(contact, SpringFlanks)]
+        contacts = contacts[: len(contacts) - len(self._springs)]
         self._mbs, self._data, self._contacts, self._slides = mbs, mbs.systemData, contacts, slides
         self._step, self._dynamics, self._resting = step, Dynamics(mbs, t, step), Resting(mbs)
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
+        self._at_meshes = [i for i, one in enumerate(contacts) if isinstance(one.stick, MeshLaw)]
+        self._one_way = [i for i, one in enumerate(contacts) if isinstance(one.stick, OneWayLaw)]
+        self._meshes = Meshes(mbs, [one.stick for one in contacts if isinstance(one.stick, MeshLaw)])
         locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
         self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
@@ -72,6 +84,11 @@ class ModeChoice:
         change = self._dynamics.violation()
         if change.any():
             self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t(initial) + change, initial)
+
+    @property
+    def groups(self) -> list[list[StickingContact]]:
+        """Contacts at rest that share a load."""
+        return [group.contacts for group in self._resting.groups]
 
     def take_back(self, t: float) -> None:
         """Subtract the first slip of contacts that slide much faster at the time t (s).
@@ -91,7 +108,9 @@ class ModeChoice:
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
-        self._ended = self._resting.share([one for one in ended if one.mode != Mode.OPEN])
+        self._ended = self._resting.share(
+            [one for one in ended if one.mode != Mode.OPEN and not isinstance(one, SpringFlanks)]
+        )
         self._overloaded = {contact for contact in self._ended if contact.mode == Mode.LOCKED}
         self._slipped = set()
 
@@ -101,6 +120,8 @@ class ModeChoice:
         Until ``end``, contacts that have begun to slip have sliding friction, even if others change their modes.
         """
         self._load()
+        for spring in self._springs:
+            spring.choose(self._mbs, AHEAD * self._step)
         for contact in self._contacts:
             contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
@@ -108,9 +129,10 @@ class ModeChoice:
         self._dynamics.evaluate(t)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
         self._holding = np.array([contact.holding(t) for contact in self._contacts])
-        self._limits = np.array([contact.capacities(t) for contact in self._contacts])
+        self._limits = np.array([contact.capacities(t) for contact in self._contacts]).reshape(-1, 2)
         bounds = slips.bounds(self._present()[1], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
+        still[self._one_way] |= slips.now[[slips.sets.blocks[i].start for i in self._one_way]] < 0.0
         modes = [
             Mode.LOCKED if at_rest or contact in self._ended else contact.sliding_mode(slips.now[rows])
             for contact, at_rest, rows in zip(self._contacts, still.tolist(), slips.sets.blocks, strict=True)
@@ -174,8 +196,10 @@ class ModeChoice:
         for contact, mode, holding in zip(contacts, modes, self._holding.tolist(), strict=True):
             contact.enter(self._mbs, Mode.OPEN if holding == 0.0 else mode)
         still = [i for i, contact in enumerate(contacts) if contact.mode == Mode.LOCKED]
-        _, accelerations, _ = self._present()
-        found = self._slips_that_begin(t, slips, still, accelerations)
+        self._meshes.active = False
+        _, accelerations, constraints = self._present()
+        self._meshes.active = True
+        found = self._slips_that_begin(t, slips, still, accelerations, constraints)
         wanted, first, begun = dict[int, float](), list[int](), list[int]()
         for i in still:
             contact, slip, own = contacts[i], found[blocks[i]], range(len(found))[blocks[i]]
@@ -195,17 +219,53 @@ class ModeChoice:
         for i in still:
             if i not in resting:
                 contacts[i].enter(self._mbs, contacts[i].sliding_mode(found[blocks[i]]))
-        self._resting.divide(contacts, slips, resting, self._places, self._resting.rows)
+        to_loads = slips.to_loads(self._meshes.places)
+        self._resting.divide(contacts, slips, resting, self._places, self._resting.rows, to_loads)
         slips.give(wanted, first)
+        self._find_effects_of_meshes(slips)
         forces = self._dynamics.forces()
         held, accelerations, constraints = slips.hold(self._resting.rows, forces)
         constraints[self._resting.places] = -held
         return forces, accelerations, constraints
 
+    def _find_effects_of_meshes(self, slips: Slips) -> None:
+        """Find how friction of meshes changes their moments while the present locks hold."""
+        if not self._at_meshes:
+            return
+        own = [slips.sets.blocks[i].start for i in self._at_meshes]
+        held, to_loads = self._resting.rows, slips.to_loads(self._meshes.places)
+        holding = np.linalg.solve(slips.to_rates[np.ix_(held, held)], -slips.to_rates[np.ix_(held, own)])
+        self._meshes.by_friction = to_loads[:, own] + to_loads[:, held] @ holding
+
+    def _loaded(
+        self,
+        slips: Slips,
+        contacts: Sequence[int],
+        rows: Sequence[int],
+        constraints: FloatArray,
+        reduction: FloatArray,
+    ) -> LoadedRows | None:
+        if not (self._at_meshes or self._one_way):
+            return None
+        laws = [self._contacts[i].stick for i in contacts]
+        return LoadedRows(
+            -constraints[self._meshes.places],
+            slips.to_loads(self._meshes.places)[:, rows],
+            [law if isinstance(law, MeshLaw) else None for law in laws],
+            np.array([int(self._contacts[i].mode) for i in contacts], dtype=int),
+            reduction,
+        )
+
     def _slips_that_begin(
-        self, t: float, slips: Slips, still: Sequence[int], accelerations: FloatArray
+        self,
+        t: float,
+        slips: Slips,
+        still: Sequence[int],
+        accelerations: FloatArray,
+        constraints: FloatArray,
     ) -> FloatArray:
-        """Return the slip accelerations of the contacts ``still``, and zero for others."""
+        """Return the slip accelerations of the contacts ``still``; those of others have no meaning."""
+        still = [*still, *(i for i in self._at_meshes if i not in still)]
         contacts = [self._contacts[i] for i in still]
         rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
         for i in self._varying:
@@ -214,6 +274,10 @@ class ModeChoice:
         ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
         overloads = np.array([contact in self._overloaded for contact in contacts])
         shrunk = (SHRUNK * overloads * static.max(axis=1, initial=0.0))[:, None]
+        loaded = self._loaded(slips, still, rows, constraints, 1.0 - SHRUNK * overloads)
+        if loaded is not None:
+            static[[i in self._one_way for i in still]] = 0.0, math.inf
+            shrunk = np.where(np.isfinite(static), shrunk, 0.0)
         sliding = np.minimum(static - shrunk, static / ratios)
         slipped = np.array([contact in self._slipped for contact in contacts], dtype=bool)[:, None]
         found = np.zeros(len(slips.rows))
@@ -221,7 +285,7 @@ class ModeChoice:
             slips.to_rates[np.ix_(rows, rows)],
             slips.rates(accelerations)[rows],
             slips.noise(accelerations)[rows],
-            slips.sets.only(still),
+            replace(slips.sets.only(still), loaded=loaded),
             np.where(slipped, sliding, static - shrunk),
             sliding,
         )
@@ -251,11 +315,15 @@ class ModeChoice:
         return wanted
 
     def margins(self, t: float) -> FloatArray:
-        """Return numbers that fall below zero when the present modes end, shape (contacts,).
+        """Return numbers that fall below zero when the present modes end, shape (contacts + springs,).
 
         They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
         rest, or ±1 without load or coefficient.
         """
+        springs = [spring.margin(self._mbs, t) for spring in self._springs]
+        return np.append(self._margins_of_contacts(t), springs)
+
+    def _margins_of_contacts(self, t: float) -> FloatArray:
         slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
         margins: FloatArray = self._offsets + self._directions * slips
         for i in self._varying:

@@ -11,6 +11,7 @@ from scipy.optimize import minimize
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.rows.laws import MeshLaw
 from exudyn_models.solver.stick.complementarity import independent_rows
 from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
@@ -25,7 +26,8 @@ class Group:
     """Contacts at rest that share a load.
 
     The first of their rows are constraints with forces at ``places``; ``blocks`` are the rows of each contact, and
-    ``by_chosen`` relates the slips of the other rows to those of the first.
+    ``by_chosen`` relates the slips of the other rows to those of the first. Forces along the rows change the moments
+    of meshes by ``to_loads``, shape (m, k).
     """
 
     mbs: Any
@@ -33,6 +35,7 @@ class Group:
     blocks: list[NDArray[Any]]
     places: NDArray[Any]
     by_chosen: FloatArray
+    to_loads: FloatArray
     _others: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
@@ -57,9 +60,14 @@ class Group:
             forces = start + self._undetermined @ x
             values, slopes = list[float](), list[FloatArray]()
             for contact, rows, limit in zip(self.contacts, self.blocks, limits, strict=True):
-                found, by_force = contact.shares(forces[rows], limit)
-                values += found
-                slopes += [slope @ self._undetermined[rows] for slope in by_force]
+                by_x, law = self._undetermined[rows], contact.stick
+                if isinstance(law, MeshLaw):
+                    by_x = np.vstack((by_x, self.to_loads[law.place] @ self._undetermined))
+                    shares_of = law.shares(float(forces[rows[0]]), float(by_x[1] @ x))
+                else:
+                    shares_of = contact.shares(forces[rows], limit)
+                values += shares_of[0]
+                slopes += [slope @ by_x for slope in shares_of[1]]
             return np.array(values), np.array(slopes)
 
         share = shares(self._others)[0].max()
@@ -67,6 +75,11 @@ class Group:
             self._others = least_maximum(shares, self._others)
             share = shares(self._others)[0].max()
         return start + self._undetermined @ self._others, float(share)
+
+    def load_of(self, mesh: MeshLaw) -> float:
+        """Return the change of the present T (N m) of a mesh by the forces of rows that are not constraints."""
+        self.forces(self.mbs.systemData.GetTime(CURRENT))
+        return float(self.to_loads[mesh.place] @ self._undetermined @ self._others)
 
     def forces_of(self, i: int) -> FloatArray:
         """Return the present forces of a contact along its locks."""
@@ -91,10 +104,12 @@ class Resting:
         resting: Sequence[int],
         places: NDArray[Any],
         before: Sequence[int],
+        to_loads: FloatArray,
     ) -> None:
         """Choose the rows of the contacts ``resting`` that become constraints, and find those that share loads.
 
-        ``places`` are those of the forces of all constraints, and rows ``before`` are preferred.
+        ``places`` are those of the forces of all constraints, and rows ``before`` are preferred. Forces along all
+        rows change the moments of meshes by ``to_loads``, shape (m, k).
         """
         own_rows = [range(len(slips.rows))[slips.sets.blocks[i]] for i in resting]
         rows = [row for own in own_rows for row in own]
@@ -121,13 +136,25 @@ class Resting:
             order = [chosen[k] for k in first] + [others[k] for k in rest]
             blocks = [np.array([order.index(i) for i in np.flatnonzero(owner == k).tolist()]) for k in own]
             self.groups.append(
-                Group(self._mbs, members, blocks, self.places[first], by_chosen[np.ix_(rest, first)])
+                Group(
+                    self._mbs,
+                    members,
+                    blocks,
+                    self.places[first],
+                    by_chosen[np.ix_(rest, first)],
+                    to_loads[:, [rows[i] for i in order]],
+                )
             )
             for i, contact in enumerate(members):
                 contact.stick.holds = partial(self.groups[-1].forces_of, i)
+                if isinstance(contact.stick, MeshLaw):
+                    contact.stick.shifts = partial(self.groups[-1].load_of, contact.stick)
         self.alone_places = places[[slips.sets.blocks[i].start for i in self.alone]]
         for i, place in zip(self.alone, self.alone_places, strict=True):
-            contacts[i].stick.holds = partial(self._force_at, int(place))
+            stick = contacts[i].stick
+            stick.holds = partial(self._force_at, int(place))
+            if isinstance(stick, MeshLaw):
+                stick.shifts = None
 
     def _force_at(self, place: int) -> FloatArray:
         return -np.asarray(self._data.GetAECoordinates()[place : place + 1])

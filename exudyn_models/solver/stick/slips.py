@@ -6,6 +6,7 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
+from numpy.typing import NDArray
 
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Sets, independent_rows
@@ -69,6 +70,11 @@ class Slips:
         """Return the rounding errors of slip accelerations, which contain a difference over time."""
         speeds = np.abs(self._velocities) * (1e-5 / self._dynamics.difference)
         return np.asarray(NOISE * np.abs(self.rows) @ (np.abs(accelerations) + speeds))
+
+    def to_loads(self, places: NDArray[Any]) -> FloatArray:
+        """Return the moments of constraints at ``places`` by unit forces along all locks, shape (m, k)."""
+        size = len(self._velocities)
+        return -np.asarray(self._dynamics.inverse[size + places, :size] @ self.rows.T)
 
     def hold(self, held: Sequence[int], forces: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the forces that hold rows under generalised ``forces``, accelerations and constraint forces."""

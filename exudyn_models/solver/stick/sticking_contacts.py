@@ -10,9 +10,12 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_pairs import FREE, AxialStick, Mode, spanned
-from exudyn_models.solver.contacts import contacts_of
+from exudyn_models.forces.axial_pairs import FREE, Mode, RowLaw, spanned
+from exudyn_models.solver.contacts import laws_of
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.rows.backlash import Backlash
+from exudyn_models.solver.rows.laws import LEAST as UNLOADED
+from exudyn_models.solver.rows.laws import MeshLaw, RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
@@ -59,7 +62,7 @@ class StickingContact:
 
     item: int
     """Object number of the connector."""
-    stick: AxialStick
+    stick: RowLaw
     places: NDArray[Any]
     """Positions of its coordinates among the model's."""
 
@@ -159,6 +162,36 @@ class StickingContact:
         if self.opens_or_closes(self.holding(t)):
             return -1.0
         return int(self.mode) * self.stick.slip(*self._state(mbs)[:2]) if self.stick.slides else 1.0
+
+
+class RotorCoupling(StickingContact):
+    """One-way clutch or mesh, which never opens."""
+
+    def holding(self, t: float) -> float:
+        """Return a moment in N m without effect on the choice of modes; the true limits depend on the moments."""
+        return UNLOADED
+
+
+class SpringFlanks(StickingContact):
+    """Flanks of a torsional spring with backlash."""
+
+    @property
+    def flanks(self) -> Backlash:
+        """Law of the spring."""
+        return cast(Backlash, self.stick)
+
+    def choose(self, mbs: Any, ahead: float) -> None:
+        """Choose the flank that is pressed a time ``ahead`` (s) from now."""
+        twist, rate = self._motion(mbs)
+        self.flanks.mode = self.flanks.pressed(twist + ahead * rate, rate)
+
+    def margin(self, mbs: Any, t: float) -> float:
+        """Return a moment in N m that falls below zero when the pressed flank changes."""
+        return self.flanks.margin(*self._motion(mbs))
+
+    def _motion(self, mbs: Any) -> tuple[float, float]:
+        q, q_t, _ = self._state(mbs)
+        return self.flanks.twist(q), self.flanks.slip(q, q_t)
 
 
 class PlanarContact(StickingContact):
@@ -264,22 +297,38 @@ class PlanarContact(StickingContact):
 
 
 def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
-    """Return the contacts of a model that stick exactly, on one axis or in the plane, in a run between two times (s).
+    """Return the contacts of a model that stick exactly in a run between two times (s), and springs after them.
 
     Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
+    Raises ``ValueError`` if a contact in the plane accompanies a gear with losses or a one-way clutch.
     """
     contacts = [
-        StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
-        for item, contact in contacts_of(mbs).items()
-        if contact.stick is not None
+        StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)))
+        for item, law in laws_of(mbs).items()
+        if not (isinstance(law, MeshLaw) and law.lossless)
     ]
     # Powers keep periodic motions from vanishing at all of these times.
     _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)
-    return [
-        (StickingContact if part.on_axis else PlanarContact)(contact.item, part, contact.places)
+    found = [
+        _kind(part)(contact.item, part, contact.places)
         for contact in contacts
         for part in contact.stick.active
     ]
+    planar = next((contact for contact in found if isinstance(contact, PlanarContact)), None)
+    if planar is not None and any(isinstance(contact, RotorCoupling) for contact in found):
+        raise ValueError(
+            f"object {planar.item}: a contact in the plane that sticks exactly cannot be combined with a gear with "
+            "losses or a one-way clutch; give the contact a regularisation, or hold it on one axis by joints"
+        )
+    return sorted(found, key=lambda contact: isinstance(contact, SpringFlanks))
+
+
+def _kind(part: RowLaw) -> type[StickingContact]:
+    if isinstance(part, Backlash):
+        return SpringFlanks
+    if isinstance(part, RotaryLaw):
+        return RotorCoupling
+    return StickingContact if part.on_axis else PlanarContact
 
 
 def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) -> None:

@@ -81,6 +81,7 @@ class _Run:
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
         self._announced, self._settled = -math.inf, list[float]()
+        self._ended_at_once = -math.inf
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
         self._accelerations = np.empty(0)
         self._slides = SlidingSteps(mbs, self._planar, self._step)
@@ -234,13 +235,16 @@ class _Run:
         points: list[_Point] = [(low, above), (high, below)]
         least = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
         side, large = 0, np.abs(below) + np.abs(above)
+        # A slip that has just begun is zero at the start of the step, and may turn back within the step.
+        start, turns_back = low, self._ended_at_once == low
         for tried in range(MOST_CHANGES):
             ended = below < 0.0
             within = [(low, np.maximum(above, 0.0)), (high, below)]
             trials = [_roots(pair, ended) for pair in (points[-3:], points[-2:], within)]
             roots = next((root for root in trials if low < root.min() < high), np.where(ended, low, np.inf))
             found = float(roots.min())
-            t = found if tried % 4 < 3 else (low + high) / 2.0
+            bisects = tried % 4 == 3 or (turns_back and low == start)
+            t = (low + high) / 2.0 if bisects else found
             at_once = tried == 0 and t - low <= least
             t = min(max(t, low) + least / 2.0, high - least / 2.0)
             is_close = max(abs(t - found), abs(t - trials[1].min())) <= SOON * self._step
@@ -254,6 +258,7 @@ class _Run:
                 high, below, above, side = t, now, above if side <= 0 else above / 2.0, 1
             else:
                 low, above, below, side = t, now, below if side >= 0 else below / 2.0, -1
+        self._ended_at_once = low if at_once else -math.inf
         if not at_once:
             t = high if high - low <= least else t
             self._step_to(t)

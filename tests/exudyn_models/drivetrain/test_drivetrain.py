@@ -8,7 +8,7 @@ import pytest
 
 from exudyn_models import PASSENGER_CAR, build_drivetrain, four_cylinder
 from exudyn_models.drivetrain.picture import draw_drivetrain
-from exudyn_models.solver.linear_matrices import state_matrix
+from exudyn_models.solver.linear.matrices import state_matrix
 
 CENTRED = replace(PASSENGER_CAR, offset=0.0, unbalance=0.0)
 EPSILON = 1e-3

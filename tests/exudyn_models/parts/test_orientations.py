@@ -8,7 +8,7 @@ import pytest
 from free_bodies import ball, items, new_model, rotor, settings_of
 
 from exudyn_models import add_native_friction, add_ring_friction, solve_dynamic
-from exudyn_models.solver.linear_matrices import singular_mass
+from exudyn_models.solver.linear.matrices import singular_mass
 
 NODES = pytest.mark.parametrize(
     "node", [exu.NodeType.RotationEulerParameters, exu.NodeType.RotationRotationVector], ids=str

@@ -3,7 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import new_model, rate_of, rotor, settings_of
+from free_bodies import coordinate, drive, items, new_model, rate_of, rotor, settings_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
 
@@ -87,3 +87,56 @@ def test_the_next_run_goes_on_from_the_end_if_it_is_asked_to():
 def test_invalid_breaks_are_refused(breaks, message):
     with pytest.raises(ValueError, match=message):
         solve_dynamic(brake()[0], fixed_steps(6), breaks=breaks)
+
+
+@pytest.mark.parametrize("solver", [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha, SOLVERS.RK44])
+def test_controllers_act_once_at_each_sample_and_hold_their_loads_between(solver):
+    """A wheel of 2 kg m² with −3·ω N m from samples of 20 ms, and a brake of 1 N m in every other sample of 50 ms."""
+    mbs = new_model()
+    wheel = rotor(mbs, 2.0, 5.0)
+    load, brake = (
+        mbs.AddLoad(items.LoadCoordinate(markerNumber=coordinate(mbs, wheel), load=0.0)) for _ in range(2)
+    )
+    calls = []
+
+    def control(mbs, t):
+        calls.append(t)
+        mbs.SetLoadParameter(load, "load", -3.0 * rate_of(mbs, wheel))
+
+    def toggle(mbs, t):
+        mbs.SetLoadParameter(brake, "load", -1.0 * (round(t / 0.05) % 2))
+
+    solve_dynamic(mbs, settings_of(0.2, 200), solver, sampled={0.02: control, 0.05: toggle})
+    assert calls == pytest.approx(np.arange(10) * 0.02, abs=1e-12)
+    speed = 5.0
+    for k in range(10):
+        braked = max(0.0, min(0.1, 0.02 * k + 0.02) - max(0.05, 0.02 * k))
+        braked += max(0.0, 0.02 * k + 0.02 - max(0.15, 0.02 * k))
+        speed -= (3.0 * speed * 0.02 + braked) / 2.0
+    assert rate_of(mbs, wheel) == pytest.approx(speed, rel=1e-9)
+
+
+def test_a_controller_releases_a_locked_clutch_at_its_sample():
+    mbs = new_model()
+    wheel = rotor(mbs, 1.0, 0.0)
+    brake = add_ring_friction(
+        mbs, None, wheel, contact_radius=1.0, friction_coefficient=1.0, normal_load=10.0
+    )
+    drive(mbs, wheel, 4.0)
+    loads = iter([10.0, 10.0, 3.0, 3.0])
+    changes = solve_dynamic(
+        mbs,
+        settings_of(0.4, 400),
+        SOLVERS.TrapezoidalIndex2,
+        sampled={0.1: lambda mbs, t: brake.change(normal_load=next(loads))},
+    )
+    assert [(change.time, int(change.after)) for change in changes] == [(pytest.approx(0.2, abs=1e-9), 1)]
+    assert rate_of(mbs, wheel) == pytest.approx(0.2, rel=1e-9)
+
+
+def test_invalid_samples_are_refused():
+    mbs = new_model()
+    rotor(mbs, 1.0, 0.0)
+    for sampled, message in (({0.0: lambda mbs, t: None}, "sampled = 0"), ({0.1: 3}, r"sampled\[0.1\]")):
+        with pytest.raises(ValueError, match=message):
+            solve_dynamic(mbs, settings_of(0.1, 10), SOLVERS.RK44, sampled=sampled)

@@ -21,7 +21,8 @@ from free_bodies import (
 )
 
 from exudyn_models import add_ring_friction, solve_dynamic
-from exudyn_models.solver.stick.complementarity import Sets, bounded_forces, rest_or_slip
+from exudyn_models.solver.rows.active_set import unloaded
+from exudyn_models.solver.stick.complementarity import Sets, rest_or_slip
 from exudyn_models.solver.stick.resting import least_maximum
 from reference_model.trajectory import SimulationError
 
@@ -52,7 +53,7 @@ def test_forces_between_limits_are_those_of_the_least_sum_over_all_modes():
         root = rng.normal(size=(size, rank))
         to_rates, limits = root @ root.T, rng.uniform(0.1, 2.0, size)
         rates = root @ rng.normal(size=rank)
-        forces, left = bounded_forces(to_rates, rates, -limits, limits)
+        forces, left = unloaded(size).forces(to_rates, rates, np.repeat(limits[:, None], 2, axis=1))
         assert (np.abs(forces) <= limits).all()
         assert np.abs(left[np.abs(forces) < limits * (1.0 - 1e-9)]).max(initial=0.0) < 1e-9
         assert (left * forces < 1e-9).all()

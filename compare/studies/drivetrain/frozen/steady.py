@@ -49,7 +49,7 @@ def loses_stability(engine: Engine) -> Measured:
     """Let the car's flywheel turn freely in the linearisation."""
     from exudyn_models import build_drivetrain
     from exudyn_models.paper.linearisation import REGULARISATION
-    from exudyn_models.solver.linear_matrices import state_matrix
+    from exudyn_models.solver.linear.matrices import state_matrix
 
     car = centred_car()
 

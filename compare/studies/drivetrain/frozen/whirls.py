@@ -35,7 +35,7 @@ Matrix = Callable[[theory.CarWhirl], FloatArray]
 
 def _by_exudyn(car: Drivetrain) -> Matrix:
     from exudyn_models.paper.linearisation import REGULARISATION
-    from exudyn_models.solver.linear_matrices import state_matrix
+    from exudyn_models.solver.linear.matrices import state_matrix
 
     return lambda whirl: state_matrix(build(car, whirl, regularisation=REGULARISATION).mbs)
 

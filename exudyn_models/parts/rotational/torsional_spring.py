@@ -1,0 +1,36 @@
+"""Torsional springs with backlash."""
+
+from typing import Any
+
+from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, rotors_of, weights_of
+from exudyn_models.solver.rows.backlash import Backlash
+from reference_model.systems import finite_number, positive_number
+
+
+def add_torsional_spring(
+    mbs: Any, first: Any, second: Any, *, stiffness: float, damping: float = 0.0, backlash: float
+) -> RotorCoupling:
+    """Add a torsional spring with backlash to a model; return its handle.
+
+    Within the ``backlash``, a total clearance in rad > 0, it transmits nothing. Beyond it, spring (``stiffness`` > 0
+    in N m/rad) and damper (``damping`` >= 0 in N m s/rad) push together, but never pull. ``solve_dynamic`` locates
+    each contact and separation with implicit solvers. Rotors are those of ``add_gear``.
+
+    Several of them side by side are a clutch damper of several stages, and ``add_ring_friction`` beside them its
+    hysteresis.
+    """
+    nodes = list(rotors_of(mbs, first=first, second=second).values())
+    if (damping := finite_number("damping", damping)) < 0.0:
+        raise ValueError(f"damping = {damping:g} N m s/rad: it must be >= 0")
+    references = [
+        0.0 if node is None else mbs.GetNodeParameter(node, "referenceCoordinates")[0] for node in nodes
+    ]
+    law = Backlash(
+        weights_of(nodes, (-1.0, 1.0)),
+        mbs.systemData,
+        stiffness=positive_number("stiffness", stiffness, "N m/rad"),
+        damping=damping,
+        clearance=positive_number("backlash", backlash, "rad"),
+        middle=references[1] - references[0],
+    )
+    return add_coupling(mbs, nodes, law)

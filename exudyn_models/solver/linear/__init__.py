@@ -1,0 +1,1 @@
+"""Linearisation of Exudyn models."""

@@ -1,0 +1,118 @@
+"""Forces of rows at rest or in slip whose limits may be infinite, or grow with the moments of meshes.
+
+The slip accelerations are r = g + A·f, and the moments of the meshes T = T₀ + W·f. Each row has r = 0 within its
+limits, or f at a limit against r. All rows change their states together until every row agrees with its state. If
+that takes too long, only the first one that disagrees changes, which always ends without meshes (K. G. Murty,
+Mathematical Programming 7 (1974) 231). With meshes, random states follow.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from exudyn_models.solver.rows.laws import MeshLaw
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+REGULAR = 1e-12
+"""Relative compliance that makes the forces of redundant rows unique."""
+
+TOGETHER, MOST = 20, 4000
+"""Number of iterations that change all rows together from the same start, and of all."""
+
+CLOSE = 1e-11
+"""Relative tolerance of forces, moments and slip accelerations."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedRows:
+    """Rows with infinite limits or meshes.
+
+    ``loads``, shape (m,), is T₀ and ``by_force``, shape (m, k), W. ``laws`` contains the mesh of each row, or None,
+    and ``pinned``, shape (k,), the direction of rows that slide already, or 0. The limits of meshes are multiplied
+    by ``reduction``, shape (k,).
+    """
+
+    loads: FloatArray
+    by_force: FloatArray
+    laws: Sequence[MeshLaw | None]
+    pinned: NDArray[np.int_]
+    reduction: FloatArray
+
+    def forces(
+        self, to_rates: FloatArray, rates: FloatArray, limits: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the forces, shape (k,), and the slip accelerations that they leave.
+
+        ``limits``, shape (k, 2), are those of rows without a mesh against slip forward and backward.
+        """
+        states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
+        meshes = any(law is not None for law in self.laws)
+        matrix = to_rates + np.diag(REGULAR * np.where(np.diag(to_rates) > 0.0, np.diag(to_rates), 1.0))
+        for tried in range(MOST):
+            if meshes and tried and tried % TOGETHER == 0:
+                states = np.where(self.pinned != 0, self.pinned, random.integers(-1, 2, len(states)))
+                states[np.isinf(limits[:, 1]) & (states < 0)] = 0
+            forces, power = self._at(states, power, matrix, rates, limits)
+            left = rates + to_rates @ forces
+            now = self._limits(power, limits)
+            weight = np.maximum(np.abs(rates), np.diag(to_rates) * np.abs(forces))
+            wanted = np.where(
+                states == 0,
+                np.where(forces < -now[:, 0] - CLOSE * np.abs(forces), 1, 0)
+                - np.where(forces > now[:, 1] + CLOSE * np.abs(forces), 1, 0),
+                np.where(states * left < -CLOSE * weight, 0, states),
+            )
+            wanted = np.where(self.pinned != 0, self.pinned, wanted)
+            wrong = np.flatnonzero(wanted != states)
+            if not len(wrong):
+                return forces, left
+            changed = wrong if meshes or tried < TOGETHER else wrong[:1]
+            states[changed] = wanted[changed]
+        raise SimulationError("found no forces of gears and contacts that satisfy their laws: a gear jams")
+
+    def _limits(self, loads: FloatArray, limits: FloatArray) -> FloatArray:
+        found = limits.copy()
+        for i, law in enumerate(self.laws):
+            if law is not None:
+                found[i] = [self.reduction[i] * law.limit(loads[law.place], way) for way in (1, -1)]
+        return found
+
+    def _at(
+        self,
+        states: NDArray[np.int_],
+        power: FloatArray,
+        matrix: FloatArray,
+        rates: FloatArray,
+        limits: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the forces in these states, and the moments of the meshes; these begin with ``power``."""
+        size, slides = len(states), states != 0
+        loads = power
+        for _ in range(4 * len(loads) + 4):
+            system, right = matrix.copy(), -rates
+            system[slides] = np.eye(size)[slides]
+            right[slides] = np.where(states > 0, -limits[:, 0], limits[:, 1])[slides]
+            for i, law in enumerate(self.laws):
+                if law is None or not slides[i]:
+                    continue
+                load, way = loads[law.place], int(states[i])
+                sign = 1.0 if load >= 0.0 else -1.0
+                slope = self.reduction[i] * way * sign * law.share(abs(load), load * way < 0.0)
+                system[i] += slope * self.by_force[law.place]
+                right[i] = -self.reduction[i] * way * law.preload - slope * self.loads[law.place]
+            forces = np.linalg.solve(system, right)
+            found = self.loads + self.by_force @ forces
+            same = np.abs(found - loads).max(initial=0.0) <= CLOSE * np.abs(found).max(initial=0.0)
+            loads = found
+            if same:
+                break
+        return np.asarray(forces, float), loads
+
+
+def unloaded(count: int) -> LoadedRows:
+    """Return ``count`` rows without meshes that may all rest."""
+    none = np.zeros((0, count))
+    return LoadedRows(np.empty(0), none, [None] * count, np.zeros(count, int), np.ones(count))
