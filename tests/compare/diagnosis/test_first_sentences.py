@@ -1,0 +1,269 @@
+"""The first sentence names a cause only if the measurements exclude the others; no right engine is accused."""
+
+import functools
+import math
+from dataclasses import replace
+
+import numpy as np
+import odd_engines
+import pytest
+from faults.catalogue import mistaken
+from odd_engines import around, in_batches, in_other_time, linear, nearest, on_grid, scaled
+from stepping import engine, stepped
+
+from compare.diagnosis import findings, run
+from compare.diagnosis.findings import PROBES
+from compare.diagnosis.row import RIGHT
+from compare.engines import EVERY_KIND, BadTrajectoryError
+from reference_model import Trajectory
+
+
+def with_coefficients(name, factor):
+    """Return the reference with a coefficient μ that is ``factor()`` times the right one in each call."""
+
+    def change(system, start, times, simulate):
+        other = replace(system, friction_force=factor() * system.friction_force)
+        return simulate(other, start, times).states
+
+    return around(name, change)
+
+
+def asleep(system, start, times, *, step):
+    """Stop a body that has been slower than 2 cm/s for half a second."""
+    found = stepped(system, start, times, step=step)
+    slow = np.hypot(*found.states[:, 2:].T) < 0.02
+    if times[-1] - times[0] > 0.5 and len(times) > 8 and np.any(slow[1:]):
+        states = found.states.copy()
+        states[1:] = [*states[1, :2], 0.0, 0.0]
+        return Trajectory(system, found.times, states)
+    return found
+
+
+def ten_steps(system, start, times, *, step):
+    """Take ten steps between the requested times, whatever the step."""
+    return stepped(system, start, times, step=float(np.max(np.diff(times))) / 10.0)
+
+
+def quantised(system, *_):
+    return (
+        round(256.0 * system.friction_force / system.mass / 9.81)
+        / 256.0
+        * 9.81
+        * system.mass
+        / system.friction_force
+    )
+
+
+def turned_with(factor):
+    """Return Moreau's stepping with another disc speed."""
+
+    def simulate(system, start, times, *, step):
+        found = stepped(replace(system, disc_speed=factor * system.disc_speed), start, times, step=step)
+        return replace(found, system=system)
+
+    return simulate
+
+
+MU = "the coefficient μ is"
+random = np.random.default_rng(3)
+calls = iter(range(10**9))
+
+WRONG = [
+    # friction that depends on something
+    (
+        engine("place", factor=lambda z, _: 1.0 + 0.05 * abs(z)),
+        "changes with the place, by 5.0 % per m of",
+        MU,
+    ),
+    (
+        engine("x", factor=lambda z, _: 1.0 + 0.05 * z.real),
+        "with the place, by 5.0 % per m along 0.0°",
+        "fits",
+    ),
+    (engine("fades", factor=lambda _, t: max(1.0 - 0.1 * t, 0.5)), "changes during a slide: it is 0.99", MU),
+    (engine("gives way", factor=lambda _, t: 1.0 if t < 2.0 else 0.6), "changes during a slide", "chatters"),
+    (
+        engine("adhesion", limit=lambda system, *_: 1.0 + 1e-3 / system.friction_force),
+        "by 0.0010 N at any load",
+        "at once",
+    ),
+    (
+        engine("quantised", limit=quantised),
+        "at 1 kg, 0.2 N, 1 m/s and 1 m from the axis, the coefficient μ is 4.2",
+        "%, ",
+    ),
+    (
+        engine("power", limit=lambda system, *_: system.friction_force**-0.03),
+        "proportional to friction force^-0.03",
+        MU,
+    ),
+    (
+        engine("fast", limit=lambda _, speed, *__: float(speed < 50.0)),
+        "is missing at 0.0022 kg, 0.0010 N, 90 m/s",
+        MU,
+    ),
+    (
+        replace(engine("half"), function=turned_with(0.5)),
+        "assumes 0.5 times the speed of the master disc",
+        MU,
+    ),
+    (replace(engine("rpm"), function=turned_with(30.0 / math.pi)), "assumes 9.", MU),
+    # other forces
+    (
+        engine("tilted", push=lambda system, *_: 0.02 * system.mass),
+        "accelerated by 0.020 m/s² along 0.0°",
+        "spring",
+    ),
+    (engine("wind", push=lambda *_: 1j), "a force of 1.0 N along 90.0° acts", "spring"),
+    (
+        engine("turning", push=lambda system, _, v: -0.02j * system.mass * v),
+        "velocity turns by −0.020 rad/s",
+        "Stribeck",
+    ),
+    (
+        engine("across", push=lambda system, _, v: 0.02j * v),
+        "0.020 N per m/s acts across every velocity",
+        "spring",
+    ),
+    (
+        engine("drag", push=lambda system, _, v: -0.04 * system.mass * v),
+        "loses 4.0 % of its speed per second",
+        "at once",
+    ),
+    (
+        engine("air", push=lambda system, _, v: -1e-3 * v * abs(v)),
+        "square of the speed, 0.0010 N per m²/s²",
+        "at once",
+    ),
+    (
+        engine("linear drag", push=lambda system, _, v: -0.1 * v),
+        "a drag of 0.10 N per m/s of the speed",
+        "at once",
+    ),
+    (
+        engine("viscous", push=lambda system, z, v: -0.1 * system.mass * (v - 1j * system.disc_speed * z)),
+        "viscous friction of 0.10 N per kg and m/s of the slip",
+        "damping",
+    ),
+    (
+        engine("centre", push=lambda system, z, _: -0.1 * system.mass * z),
+        "0.10 m/s² per m towards the axis",
+        "spring",
+    ),
+    (
+        engine("tilted and rough", limit=lambda *_: 1.02, push=lambda system, *_: 0.01 * system.mass),
+        "along 0.0° (is the plane tilted?), and the coefficient μ is 2.0 % too large",
+        "spring",
+    ),
+    # the support
+    (
+        mistaken("damper twice", lambda system: {"damping": 2.0 * system.damping}),
+        "damper force is 100 % too large",
+        MU,
+    ),
+    (
+        mistaken(
+            "support", lambda system: {"damping": 2.1 * system.damping, "stiffness": 2.1 * system.stiffness}
+        ),
+        "the spring force is 2.1 times",
+        "mass",
+    ),
+    (
+        mistaken("springs", lambda s: {"damping": max(s.damping, 0.01 * math.sqrt(s.stiffness * s.mass))}),
+        "a body on springs loses 1.0 % of its speed per second",
+        "spring force",
+    ),
+    (mistaken("pounds", lambda system: {"mass": 0.4536 * system.mass}), "the mass is 0.454 times", MU),
+    # the output
+    (
+        around("degrees", scaled([5], 180.0 / math.pi), EVERY_KIND),
+        "57.3 times the given spin, as if",
+        "moment",
+    ),
+    (around("other sense", scaled([5], -1.0), EVERY_KIND), "-1 times the given spin", "moment"),
+    (around("mirrored", scaled([3], -1.0)), "-1 times the given velocity along y", "spring"),
+    (around("velocities", scaled([2, 3], 1.01)), "1.01 times the given velocity", MU),
+    (around("positions", scaled([0, 1], 1.01)), "moves by 1.01 times the integral of its velocity", "spring"),
+    (around("late", in_other_time(lambda t: t - 1e-3)), "are returned 1.0 ms late", "converge"),
+    (around("clock", in_other_time(lambda t: 1.01 * t)), "moves by 1.01 times the integral", "mass"),
+    (around("milliseconds", in_other_time(lambda t: 1e-3 * t)), "moves by 0.001 times the integral", "mass"),
+    (around("nearest", on_grid(1e-2, nearest)), "as if states belonged to other times", "turntable"),
+    (around("linear", on_grid(2e-2, linear)), "states lie on straight lines", "spring"),
+    (
+        around("rounded", lambda *of: np.round(of[3](*of[:3]).states, 4)),
+        "states are rounded to 4 decimals",
+        "at once",
+    ),
+    (in_batches("reversed", lambda *_: _[-1][::-1]), "in another order than asked", "shape"),
+    (
+        in_batches("sorted", lambda s, *_: [_[-1][i] for i in np.argsort([one.mass for one in s])]),
+        "another order",
+        "shape",
+    ),
+    (
+        in_batches(
+            "shared",
+            lambda s, starts, times, _: [
+                stepped(s[0], *one, step=4e-3) for one in zip(starts, times, strict=True)
+            ],
+        ),
+        "motions of a batch differ by",
+        MU,
+    ),
+    # calls and steps
+    (
+        with_coefficients("random", lambda: random.uniform(0.95, 1.05)),
+        "equal calls return states that differ",
+        MU,
+    ),
+    (
+        with_coefficients("memory", lambda: 1.0 + 0.1 * (next(calls) % 2)),
+        "equal calls return states that differ",
+        MU,
+    ),
+    (replace(engine("ten steps"), function=ten_steps), "results do not change with the step", "damper"),
+    (
+        replace(engine("long steps"), function=lambda *motion, step: stepped(*motion, step=max(step, 1e-2))),
+        "the same at steps of 0.004 and 0.008 s",
+        MU,
+    ),
+    (replace(engine("sleeps"), function=asleep), "it falls asleep, or friction grows", "static"),
+    (engine("soft start", factor=lambda _, t: float(t > 0.02)), "0 to 0.01 s after the start of a slide", MU),
+]
+"""Wrong engines, a part of the first sentence of each, and words that the sentence must not contain."""
+
+
+def row_of(made):
+    """Return the row of an engine without the motions."""
+    row = run._empty(made)
+    for part in findings.parts_of(made).keys() & PROBES:
+        try:
+            row = run._with(row, part, run.measured(made, part))
+        except BadTrajectoryError as error:
+            row = replace(row, gaps=row.gaps | {part: str(error)})
+    return row
+
+
+@pytest.mark.parametrize(("made", "said", "not_said"), WRONG, ids=[made.name for made, *_ in WRONG])
+def test_the_first_sentence_says_what_was_measured(made, said, not_said):
+    row = row_of(made)
+    first = row.sentences[0]
+    assert said in first
+    assert not_said not in first
+    assert row.verdict != RIGHT
+
+
+@pytest.mark.parametrize("made", odd_engines.RIGHT, ids=lambda made: made.name)
+def test_no_right_engine_of_any_kind_is_accused(made):
+    row = row_of(made)
+    assert row.verdict == RIGHT
+    assert row.sentences[0].startswith(
+        ("Coulomb friction, accurate to ", "The force and the moment of friction")
+    )
+
+
+def test_a_damped_vibration_is_repeated_with_smaller_steps():
+    """Implicit Euler damps the stick-slip vibration completely at the usual four steps."""
+    implicit = odd_engines.with_steps("implicit", functools.partial(odd_engines.implicit, 1.0))
+    assert not findings._motion(implicit, "stick-slip").converges
+    assert findings.motion(implicit, "stick-slip").converges
