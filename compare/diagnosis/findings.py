@@ -14,6 +14,7 @@ from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
 from compare.diagnosis.causes.course import Course, course
 from compare.diagnosis.causes.output import Output, output
+from compare.diagnosis.causes.patch import Patch, patch
 from compare.diagnosis.ladder import HALVED, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
@@ -133,7 +134,7 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion | Output | Course
+Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion | Output | Course | Patch
 
 
 def friction(engine: Engine) -> Friction:
@@ -355,6 +356,7 @@ PROBES: dict[str, type[Any]] = {
     "output": Output,
     "lag": Lag,
     "moments": Shares,
+    "patch": Patch,
 }
 """Parts that identify the friction law."""
 
@@ -371,7 +373,7 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     if engine.simulates(probes.TURN):
         parts["lag"] = lag
     if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
-        parts["moments"] = moments
+        parts |= {"moments": moments, "patch": patch}
     return parts | {
         name: functools.partial(motion, name=name)
         for name, case in MOTIONS.items()

@@ -227,8 +227,12 @@ LOOKS = 16
 
 
 def pulled_block(pull: float) -> PinOnDisc:
-    """Return a block under a spring force of ``pull``·μN whose spring is anchored as far as probes reach."""
-    return replace(SLIDE, stiffness=pull * FRICTION / REACH, offset=REACH)
+    """Return a block under a spring force of ``pull``·μN whose spring is anchored about as far as probes reach.
+
+    The stiffness is the same for all loads near μN, because engines may derive a characteristic speed from it.
+    """
+    near = min(pull, BEYOND[-1])
+    return replace(SLIDE, stiffness=pull / near * FRICTION / REACH, offset=near * REACH)
 
 
 def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:

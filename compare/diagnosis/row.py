@@ -4,7 +4,7 @@ import functools
 import itertools
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,12 +15,13 @@ from compare.diagnosis import wording
 from compare.diagnosis.causes.acting import acting
 from compare.diagnosis.causes.course import Course, beginning_of, change_of
 from compare.diagnosis.causes.output import Output, flaw_of
+from compare.diagnosis.causes.patch import INERTIA, Patch, law_of
 from compare.diagnosis.findings import MOTIONS, PROBES, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.ladder import RUNGS
 from compare.diagnosis.laws import CONE, DISTINCT, Friction
 from compare.diagnosis.probes import FRICTION, HEADINGS, SLIDES_FOR, SPEED, SUPPORTS
 from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, deviation, speed_limit
-from compare.diagnosis.wording import DAMPED, LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
+from compare.diagnosis.wording import DAMPED, DISCS, LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
@@ -46,6 +47,7 @@ class Row:
     repeat: Repeat | None = None
     course: Course | None = None
     output: Output | None = None
+    patch: Patch | None = None
     lag: Lag | None = None
     moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
@@ -115,13 +117,21 @@ class Row:
                 found += wording.of_history(self.history, explained, self._least_speed)
             if self.lag is not None and not explained:
                 found += wording.of_lag(self.lag, self.step, self._least_lag)
-            if self.moments is not None and support_right and spin_right:
-                found += wording.of_moments(self.moments, law)
+            if support_right and spin_right:
+                found += self._of_discs()
             if self.far is not None and forces is None:
                 found += wording.of_far(self.far)
         if self.nonlinear is not None and support_right:
             found += wording.of_nonlinear(self.nonlinear)
         return found
+
+    def _of_discs(self) -> Iterator[Remark]:
+        law, right = self.law, True
+        if self.patch is not None:
+            text, right = law_of(self.patch, law.strength if law is not None else 1.0)
+            yield Remark(sentence(text), not right, MOTION if INERTIA in text else DISCS)
+        if self.moments is not None and right:  # otherwise they follow from the law
+            yield from wording.of_moments(self.moments, law)
 
     @property
     def _explained(self) -> bool:

@@ -35,6 +35,7 @@ ASLEEP = 1e-4
 CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
 MOTION, MASS, DAMPED, FAILED = "Wrong motion", "Wrong mass", "Hidden damping", "Engine failed"
+DISCS = "Wrong friction of discs"
 """Beginnings of a verdict that does not concern friction."""
 
 

@@ -9,12 +9,13 @@ import odd_engines
 import pytest
 from faults.catalogue import mistaken
 from odd_engines import around, in_batches, in_other_time, linear, nearest, on_grid, scaled
+from scipy.integrate import solve_ivp
 from stepping import engine, stepped
 
 from compare.diagnosis import findings, run
 from compare.diagnosis.findings import PROBES
 from compare.diagnosis.row import RIGHT
-from compare.engines import EVERY_KIND, BadTrajectoryError
+from compare.engines import EVERY_KIND, BadTrajectoryError, Engine
 from reference_model import Trajectory
 
 
@@ -62,6 +63,45 @@ def turned_with(factor):
         return replace(found, system=system)
 
     return simulate
+
+
+def sliding_disc(name, law):
+    """Return an engine of discs with the force and moment/R ``law(slip, rim speed, size of both)`` over μN."""
+
+    def simulate(system, start, times, *, tolerance):
+        radius = system.contact_radius
+
+        def rates(_, state):
+            x, y, _, vx, vy, spin = state.tolist()
+            slip = complex(vx, vy) - 1j * system.disc_speed * complex(x, y)
+            rim = radius * (spin - system.disc_speed)
+            force, moment = law(slip, rim, max(math.hypot(abs(slip), rim), 1e2 * tolerance))
+            a = (-system.friction_force * force - system.stiffness * complex(x, y)) / system.mass
+            moment = system.friction_force * radius * moment + system.shaft_damping * (
+                spin - system.shaft_speed
+            )
+            return [vx, vy, spin, a.real, a.imag, -moment / system.polar_inertia]
+
+        local = max(0.01 * tolerance, 1e-13)
+        found = solve_ivp(rates, (times[0], times[-1]), start, t_eval=times, rtol=local, atol=local)
+        return Trajectory(system, np.asarray(times, dtype=float), found.y.T)
+
+    return Engine(name, simulate, ("ring",), nonlinear=False, phases=False)
+
+
+def of_disc(**parameters):
+    """Return a change of a disc's parameters by factors."""
+    return lambda system: {name: factor * getattr(system, name, 0.0) for name, factor in parameters.items()}
+
+
+def on_points(number):
+    """Return a change of a disc's contact."""
+    return lambda system: {"contact_points": number}
+
+
+def along(slip):
+    """Return the direction of a slip, and nearly zero for spin alone."""
+    return slip / max(abs(slip), 1e-6)
 
 
 MU = "the coefficient μ is"
@@ -208,6 +248,39 @@ WRONG = [
             ],
         ),
         "motions of a batch differ by",
+        MU,
+    ),
+    # discs
+    (
+        sliding_disc("ellipsoid", lambda u, w, size: (u / size, w / size)),
+        "of an ellipsoid with the limits μN and 1·μNR",
+        MU,
+    ),
+    (
+        sliding_disc("separate", lambda u, w, _: (along(u), 2.0 / 3.0 * float(np.sign(w)))),
+        "separate limits for slide and spin, μN and 0.667·μNR; it deviates from a ring by up to 87 % of μN",
+        MU,
+    ),
+    (sliding_disc("no spin friction", lambda u, *_: (along(u), 0.0)), "no friction against spin; it", "or"),
+    (sliding_disc("viscous spin", lambda u, w, _: (along(u), w)), "viscous friction against spin, 1 s/m", MU),
+    (
+        replace(mistaken("four", on_points(4)), kinds=("ring",)),
+        "the friction of 4 points; it deviates from a ring",
+        MU,
+    ),
+    (
+        replace(mistaken("ring", on_points(None)), kinds=("points",)),
+        "the friction of a ring; it deviates",
+        "or",
+    ),
+    (
+        replace(mistaken("cylinder", of_disc(polar_inertia=0.5)), kinds=("ring",)),
+        "0.5 times the right moment of in",
+        MU,
+    ),
+    (
+        replace(mistaken("radius", of_disc(contact_radius=0.95)), kinds=("ring",)),
+        "a ring of 0.95 times the radius",
         MU,
     ),
     # calls and steps
