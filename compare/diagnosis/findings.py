@@ -166,9 +166,9 @@ def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
 
 def scales(engine: Engine) -> Scales:
     """Return friction forces over wide ranges."""
-    pushes = probes.draws(turning=False)
+    pushes = probes.draws(turning=False, limits=engine.limits)
     if engine.simulates(probes.TURN):
-        pushes += probes.draws(turning=True)
+        pushes += probes.draws(turning=True, limits=engine.limits)
     ladder = _slides(engine, pushes)
     finest, changes = ladder.finest, np.abs(np.diff(ladder.values[-3:], axis=0))
     error = SAFETY * np.max(np.hypot(changes[..., 0], changes[..., 1]), axis=0)

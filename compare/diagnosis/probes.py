@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import simpson
 
-from compare.engines import BadTrajectoryError, Engine
+from compare.engines import EVERYWHERE, BadTrajectoryError, Engine, Ranges
 from reference_model import simulate
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
@@ -90,10 +90,14 @@ class Push:
         system = replace(SLIDE, mass=mass, stiffness=WEAK * mass, friction_force=load, disc_speed=disc_speed)
         return cls(system, place, slip + 1j * disc_speed * place)
 
-    def within_reach(self) -> Push:
-        """Return the slide about its place, with lengths, speeds and load so small that it stays within ``REACH``."""
+    def within(self, limits: Ranges) -> Push:
+        """Return the slide about its place, with lengths, speeds and load so small that it stays within limits.
+
+        The limits are those of the engine and ``REACH``.
+        """
         half = 0.5 * (SETTLES_FOR + self.lasts) * self.velocity
-        share = min(1.0, REACH / (abs(self.place) + abs(half)))
+        reach = min(REACH, limits.coordinate) / (abs(self.place) + abs(half))
+        share = min(1.0, reach, limits.speed / max(abs(self.velocity), 1e-300))
         system = replace(self.system, friction_force=share * self.system.friction_force)
         return Push(system, share * (self.place - half), share * self.velocity)
 
@@ -126,19 +130,21 @@ def headings() -> list[Push]:
     return [Push.of(1.0, FRICTION, unit * SPEED, 1j * unit) for unit in np.exp(1j * HEADINGS).tolist()]
 
 
-def draws(turning: bool) -> list[Push]:
+def draws(turning: bool, limits: Ranges = EVERYWHERE) -> list[Push]:
     """Return slides that fill the ranges of mass, speed, load, heading and place (a Latin hypercube)."""
+    masses = max(MASSES[0], limits.mass[0]), min(MASSES[1], limits.mass[1])
+    speeds = SPEEDS[0], min(SPEEDS[1], limits.speed)
     number, random = (TURNING_DRAWS if turning else DRAWS), np.random.default_rng(1)
     levels = (np.array([random.permutation(number) for _ in range(7)]) + random.random((7, number))) / number
     found = []
     for mass, speed, load, heading, radius, angle, disc in levels.T.tolist():
-        mass, speed = _within(MASSES, mass), _within(SPEEDS, speed)
+        mass, speed = _within(masses, mass), _within(speeds, speed)
         omega = math.copysign(_within(DISC_SPEEDS, disc), heading - 0.5) if turning else 0.0
         distance = speed / abs(omega) * 10.0 ** (radius - 0.5) if turning else _within(PLACES, radius)
         place = cmath.rect(distance, 2.0 * math.pi * angle)
         slip = cmath.rect(speed, HEADINGS[int(heading * len(HEADINGS))])
         push = Push.of(mass, FRICTION * mass * speed * 10.0 ** (-2.0 * load), slip, place, omega)
-        found.append(push.within_reach())
+        found.append(push.within(limits))
     return found
 
 

@@ -53,6 +53,7 @@ class Row:
     motions: dict[str, Motion] = field(default_factory=dict)
     gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts that failed
     not_measured: dict[str, str] = field(default_factory=dict)  # reasons of parts refused or out of time
+    left_out: dict[str, str] = field(default_factory=dict)  # reasons of parts beyond the declared ranges
     seconds: float = 0.0  # wall-clock time
 
     @functools.cached_property
@@ -78,6 +79,7 @@ class Row:
         if not self.share.enough:
             found.append(Remark(sentence(self.share.in_words("part")), None))
         found += wording.of_gaps("Not measured:", self.not_measured, wrong=False)
+        found += wording.of_gaps("Left out:", self.left_out, wrong=False)
         said = {
             remark.text.partition(" with ε")[0]: remark for remark in reversed(found)
         }  # regularised by two probes
