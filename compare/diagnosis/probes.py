@@ -313,18 +313,18 @@ def lag(engine: Engine, tolerance: float) -> float:
 SMOOTH = replace(SLIDE, friction_force=1e-9)  # some engines need friction
 
 SUPPORTS = {
-    "spring force": ("stiffness", replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),
+    "spring force": ("stiffness", replace(SMOOTH, stiffness=1.0), (1.0, 0.5, -0.05, 0.1)),
     "damper force": ("damping", replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
     "force of the offset": ("offset", replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
 }
-"""Parameters, systems and initial states with one acting part of the support."""
+"""Parameters, systems and initial states with one acting part of the support; no body starts at rest."""
 
 NONLINEAR = {
-    "hardening force": ("hardening", replace(SMOOTH, hardening=1.0), (1.0, 0.5, 0.0, 0.0)),
+    "hardening force": ("hardening", replace(SMOOTH, hardening=1.0), (1.0, 0.5, -0.05, 0.1)),
     "stop force": (
         "stop_stiffness",
         replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5),
-        (1.0, 0.5, 0.0, 0.0),
+        (1.0, 0.5, -0.05, 0.1),
     ),
 }
 """The same for the nonlinear parts."""

@@ -216,6 +216,9 @@ def of_history(history: History, explained: bool, least: float) -> Iterator[Rema
         )
 
 
+AT = " at 1 N"  # about the size of the forces in ``SUPPORTS``
+
+
 def of_support(support: Shares, friction: float, predicted: FloatArray) -> list[Remark]:
     """Return the wrong forces of the support, or a wrong mass.
 
@@ -229,17 +232,16 @@ def of_support(support: Shares, friction: float, predicted: FloatArray) -> list[
     if np.all(off) and farthest and float(np.ptp(alike)) < ALIKE * abs(1.0 / farthest - 1.0):
         return [Remark(f"The mass is {size_text(1.0 / farthest)}, because all forces act alike.", True, MASS)]
     spring, damper, offset = _hidden_damping(shares)
-    ends = sorted((spring, offset))
-    if off[0] and off[2] and 0.0 < ends[1] < VARIES * ends[0]:
-        percents = dict.fromkeys(error_text(100.0 * rate) for rate in sorted((*ends, damper)))
-        if np.all(off) and ends[1] < VARIES * damper < VARIES**2 * ends[0]:
-            said = f"Every body loses {' to '.join(percents)} % of its speed per second."
-            return [Remark(said, True, DAMPED)]
+    least, most = sorted((spring, offset))
+    if off[0] and off[2] and 0.0 < most < VARIES * least:
+        if np.all(off) and most < VARIES * damper < VARIES**2 * least:
+            rates = dict.fromkeys(error_text(100.0 * end(spring, damper, offset)) for end in (min, max))
+            return [Remark(f"Every body loses {' to '.join(rates)} % of its speed per second.", True, DAMPED)]
         if not off[1] and spring < 1.0:
             said = f"A body on springs loses {error_text(100.0 * spring)} % of its speed per second."
             return [Remark(said, True, DAMPED)]
     return [
-        Remark(f"The {name} is {size_text(share) if abs(share) > MISSING else 'missing'}.", True, MOTION)
+        Remark(f"The {name} is {size_text(share) + AT if abs(share) > MISSING else 'missing'}.", True, MOTION)
         for name, share, wrong in zip(SUPPORTS, shares.tolist(), off.tolist(), strict=True)
         if wrong
     ]

@@ -2,12 +2,12 @@
 
 Friction is measured as the missing momentum, so any other force counts as friction. Each term below is fitted, if
 necessary together with a factor of the coefficient μ. It explains the slides if it leaves a small share of every
-deviation. If several terms do, all of them are named.
+deviation. If no term does, pairs of terms are fitted. If several do, all of them are named.
 """
 
-import cmath
+import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from compare.diagnosis.laws import DISTINCT
 from compare.diagnosis.probes import PLANE, SETTLES_FOR, SLIDES_FOR, SUPPORTS
 from compare.diagnosis.scaling import LEAST, Scales
-from compare.report.numbers import error_text
+from compare.report.numbers import MINUS, error_text
 from reference_model.systems import FloatArray
 
 Complex = NDArray[np.complexfloating[Any, Any]]
@@ -29,6 +29,9 @@ FEWEST = 8
 
 MOST_LOST = 0.3
 """Largest share of the speed that friction may remove; a body that stops has no mean direction."""
+
+MOST = 3
+"""Largest number of explanations that are named."""
 
 CLEAR = 0.99
 """Smallest mean of the unit vectors from the axis to a body that does not pass the axis."""
@@ -151,40 +154,50 @@ def acting(scales: Scales) -> Acting | None:
         return None
     if _fit(everywhere, [everywhere.against], everywhere.force)[1] <= 1.0:
         return None  # a wrong coefficient alone
-    fitting = []
-    for term in TERMS:
-        slides = clear if term.of_place else everywhere
-        if len(slides.mass) < FEWEST:
-            continue
-        columns = [basis(slides) / slides.load for basis in term.bases]
-        numbers, misfit = _fit(slides, columns, slides.off)
-        numbers = np.concatenate(([1.0], numbers))
-        if misfit > 1.0:
-            numbers, misfit = _fit(slides, [slides.against, *columns], slides.force)
-        if misfit <= 1.0 and abs(numbers[0]) > LEAVES:  # without any friction, it is the law that is wrong
-            fitting.append((term, numbers))
-    if not fitting:
+    for number in (1, 2):
+        fits = [
+            (terms, _factors(terms, everywhere, clear)) for terms in itertools.combinations(TERMS, number)
+        ]
+        found = [(terms, numbers) for terms, numbers in fits if numbers is not None]
+        if found:
+            break
+    if not 0 < len(found) <= MOST:
         return None
-    said = " or ".join(_words(term, *numbers.tolist()) for term, numbers in fitting)
-    about = {term.about for term, _ in fitting}
-    return Acting(said, about.pop() if len(about) == 1 else FORCE, _of_supports(*fitting[0]))
+    about = {term.about for terms, _ in found for term in terms}
+    said = " or ".join(_words(terms, numbers) for terms, numbers in found)
+    return Acting(said, about.pop() if len(about) == 1 else FORCE, _of_supports(*found[0]))
 
 
-def _of_supports(term: Term, numbers: FloatArray) -> FloatArray:
-    """Return the relative changes of the forces of ``SUPPORTS`` by the term, in the middle of their measurement."""
-    found = []
-    until = 0.5 * (SETTLES_FOR + SLIDES_FOR)
+def _factors(terms: Sequence[Term], everywhere: Slides, clear: Slides) -> list[float] | None:
+    """Return the factors of μN and of the bases of ``terms`` if they explain the slides."""
+    slides = clear if any(term.of_place for term in terms) else everywhere
+    if len(slides.mass) < FEWEST:
+        return None
+    columns = [basis(slides) / slides.load for term in terms for basis in term.bases]
+    numbers, misfit = _fit(slides, columns, slides.off)
+    numbers = np.concatenate(([1.0], numbers))
+    if misfit > 1.0:
+        numbers, misfit = _fit(slides, [slides.against, *columns], slides.force)
+    # without any friction, it is the law that is wrong
+    return numbers.tolist() if misfit <= 1.0 and abs(numbers[0]) > LEAVES else None
+
+
+def _of_supports(terms: Sequence[Term], numbers: Sequence[float]) -> FloatArray:
+    """Return the relative changes of the forces of ``SUPPORTS`` by the terms, in the middle of their measurement."""
+    bases = [basis for term in terms for basis in term.bases]
+    until, found = 0.5 * (SETTLES_FOR + SLIDES_FOR), []
     for _, system, start in SUPPORTS.values():
         z, begun = complex(*start[:2]), complex(*start[2:])
         force = -system.stiffness * (z - system.offset) - system.damping * begun
-        v = begun + until * force / system.mass
-        z += until * begun + 0.5 * until**2 * force / system.mass
-        mass, load = np.array([system.mass]), np.array([system.friction_force])
-        against, velocity, place = np.array([[-v / abs(v)], [v], [z]])
-        slides = Slides(
-            mass, load, against, velocity, velocity, place, np.zeros(1, dtype=complex), np.zeros(1)
+        v, mass, load = (
+            begun + until * force / system.mass,
+            np.array([system.mass]),
+            np.array([system.friction_force]),
         )
-        extra = sum(number * basis(slides)[0] for number, basis in zip(numbers[1:], term.bases, strict=True))
+        z += until * begun + 0.5 * until**2 * force / system.mass
+        against, velocity, place, none = np.array([[-v / abs(v)], [v], [z], [0j]])
+        slides = Slides(mass, load, against, velocity, velocity, place, none, none.real)
+        extra = sum(number * basis(slides)[0] for number, basis in zip(numbers[1:], bases, strict=True))
         found.append((extra * np.conj(force)).real / abs(force) ** 2)
     return np.array(found)
 
@@ -200,16 +213,22 @@ def _fit(slides: Slides, columns: list[Complex], force: Complex) -> tuple[FloatA
     return numbers, float(np.max(np.abs(table @ numbers - right)))
 
 
-def _words(term: Term, strength: float, x: float, y: float = 0.0) -> str:
-    sign, size = "−" if x < 0.0 else "", math.hypot(x, y)
-    said = term.said.format(
-        factor=f"{sign}{error_text(size)}",
-        percent=f"{sign}{error_text(100.0 * size)}",
-        size=error_text(size),
-        large=error_text(100.0 * size),
-        angle=f"{math.degrees(cmath.phase(complex(x, y))):.1f}".replace("-0.0", "0.0"),
-    )
-    if abs(strength - 1.0) <= LEAST:
-        return said
-    change = f"{error_text(100.0 * abs(strength - 1.0))} % too {'large' if strength > 1.0 else 'small'}"
-    return f"{said}, and the coefficient μ is {change}"
+def _words(terms: Sequence[Term], numbers: Sequence[float]) -> str:
+    said, left = [], list(numbers[1:])
+    for term in terms:
+        x, y = (left.pop(0) if i < len(term.bases) else 0.0 for i in range(2))
+        sign, size = MINUS if x < 0.0 else "", math.hypot(x, y)
+        text = term.said.format(
+            factor=f"{sign}{error_text(size)}",
+            percent=f"{sign}{error_text(100.0 * size)}",
+            size=error_text(size),
+            large=error_text(100.0 * size),
+            angle=f"{round(math.degrees(math.atan2(y, x)), 1) + 0.0:.1f}",
+        )
+        said.append(text.replace(f"loses {MINUS}", "gains "))
+    if abs(numbers[0] - 1.0) > LEAST:
+        change = (
+            f"{error_text(100.0 * abs(numbers[0] - 1.0))} % too {'large' if numbers[0] > 1.0 else 'small'}"
+        )
+        said.append(f"the coefficient μ is {change}")
+    return ", and ".join(said)

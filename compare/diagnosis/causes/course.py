@@ -57,7 +57,9 @@ def change_of(found: Course) -> str:
         return ""
     ends = sorted(int(known[find(shares[known])]) for find in (np.argmin, np.argmax))
     said = [f"{shares[i]:.3g} times μN {_interval(SETTLED + i)} after the start" for i in ends]
-    return f"the friction force changes during a slide: it is {' and '.join(said)}"
+    return (
+        f"the friction force changes during a slide, with the time or the place: it is {' and '.join(said)}"
+    )
 
 
 def beginning_of(found: Course) -> str:

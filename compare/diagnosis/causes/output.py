@@ -145,23 +145,27 @@ def flaw_of(found: Output, noise: float) -> Flaw | None:
 def _jump(ratios: FloatArray, columns: Sequence[int]) -> str:
     if not columns:
         return ""
-    ratio, names = float(ratios[columns[0]]), " and ".join(NAMES[column] for column in columns)
-    unit = next((unit for factor, unit in UNITS.items() if abs(ratio / factor - 1.0) < LEAST), "")
+    found = [f"{ratios[column]:.4g} times the given {NAMES[column]}" for column in columns]
+    unit = next(
+        (unit for factor, unit in UNITS.items() if abs(ratios[columns[0]] / factor - 1.0) < LEAST), ""
+    )
     could = f", as if the output were in {unit}" if unit else ""
-    return f"right after the start, the output contains {ratio:.4g} times the given {names}{could}"
+    return f"right after the start, the output contains {' and '.join(found)}{could}"
 
 
 def _way(ratios: FloatArray, columns: Sequence[int]) -> str:
     names = " and ".join(COORDINATES[column] for column in columns)
-    first, later, factor = float(np.mean(ratios[0])), ratios[1:], float(np.mean(ratios[1:]))
+    first, later, factor = ratios[0], ratios[1:], float(np.mean(ratios[1:]))
     if np.ptp(later) > LEAST:
         ends = f"{np.min(ratios):.4g} to {np.max(ratios):.4g}"
         because = "as if states belonged to other times than asked"
     elif abs(factor - 1.0) > LEAST:
         ends = f"{factor:.4g}"
-        because = "so the positions, the velocities or the times have another unit"
-    else:
-        late = (1.0 - first) * float(TIMES[1])
+        because = "so the positions, the velocities or the times have another unit or other axes"
+    elif len(columns) > 1 and np.ptp(first) < LEAST:
+        late = (1.0 - float(first[0])) * float(TIMES[1])
         when = "late" if late > 0.0 else "early"
         return f"the states of a free body are returned {error_text(1e3 * abs(late))} ms {when}"
+    else:
+        return f"right after the start, a free body is at another {names} than its velocity explains"
     return f"a free body moves by {ends} times the integral of its velocity along {names}, {because}"

@@ -13,9 +13,7 @@ from compare.diagnosis.laws import DISTINCT
 from compare.diagnosis.probes import PLANE, SETTLES_FOR, SLIDES_FOR, SMOOTH, SPEED, discs
 from compare.engines import Engine
 from compare.report.numbers import error_text
-from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import Contact, Ring
-from reference_model.contact.points import PointsOnRing
+from reference_model import Annulus, PointsOnRing, Ring
 from reference_model.systems import DiscOnDisc, FloatArray
 
 RATIOS = np.radians([0.0, 15.0, 30.0, 40.0, 50.0, 60.0, 75.0, 90.0])
@@ -70,7 +68,7 @@ def _measured(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     radius, along = disc.contact_radius, np.exp(1j * HEADING)
     motions = []
     for ratio in RATIOS.tolist():
-        slip = SPEED * math.cos(ratio) * along
+        slip = SPEED * round(math.cos(ratio), 12) * along  # exactly 0 for spin alone
         motions.append((disc, (0.0, 0.0, 0.0, slip.real, slip.imag, SPEED * math.sin(ratio) / radius), TIMES))
     found = []
     for run in engine.simulate_many(motions, tolerance=tolerance):
@@ -98,6 +96,7 @@ def _by_shaft(engine: Engine, disc: DiscOnDisc) -> float:
 
 # --- Laws that engines have for a disc that slides and spins.
 
+Contact = Ring | PointsOnRing | Annulus
 Wrench = Callable[[FloatArray, float], Sequence[float]]
 
 
@@ -164,6 +163,11 @@ def _laws(right: Contact) -> list[Law]:
             f"has {{number}} {MOMENT}",
             lambda motion, number: (exact(motion, 1.0)[0], number * exact(motion, 1.0)[1]),
             (-3.0, 3.0),
+        ),
+        Law(
+            "has {number} times the right friction force (or a wrong mass)",
+            lambda motion, number: (number * exact(motion, 1.0)[0], exact(motion, 1.0)[1]),
+            (0.0, 3.0),
         ),
         Law(
             "has {number} times the right force and moment",

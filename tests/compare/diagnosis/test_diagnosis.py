@@ -125,7 +125,7 @@ NAMED_BY_FORCES = {
         f"{MOTION}a body that starts at 90 m/s moves at 2.0 m/s at once: speeds are limited to 2.0 m/s."
     ),
     engine("sleeps", slowest=0.01): f"{MOTION}a body that starts at 0.0081 m/s or less stops at once.",
-    engine("spring pushes", spring=-1.0): f"{MOTION}the spring force is -1 times the right one.",
+    engine("spring pushes", spring=-1.0): f"{MOTION}the spring force is -1 times the right one at 1 N.",
     engine("no spring", spring=0.0): f"{MOTION}the spring force is missing.",
     replace(mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}), kinds=("pin",)): (
         "Wrong mass: the mass is 0.0010 % too large, because all forces act alike."

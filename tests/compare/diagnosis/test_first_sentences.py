@@ -120,7 +120,11 @@ WRONG = [
         "with the place, by 5.0 % per m along 0.0°",
         "fits",
     ),
-    (engine("fades", factor=lambda _, t: max(1.0 - 0.1 * t, 0.5)), "changes during a slide: it is 0.99", MU),
+    (
+        engine("fades", factor=lambda _, t: max(1.0 - 0.1 * t, 0.5)),
+        "with the time or the place: it is 0.99",
+        MU,
+    ),
     (engine("gives way", factor=lambda _, t: 1.0 if t < 2.0 else 0.6), "changes during a slide", "chatters"),
     (
         engine("adhesion", limit=lambda system, *_: 1.0 + 1e-3 / system.friction_force),
@@ -210,7 +214,7 @@ WRONG = [
     ),
     (
         mistaken("springs", lambda s: {"damping": max(s.damping, 0.01 * math.sqrt(s.stiffness * s.mass))}),
-        "a body on springs loses 1.0 % of its speed per second",
+        "a body on springs loses 0.99 % of its speed per second",
         "spring force",
     ),
     (mistaken("pounds", lambda system: {"mass": 0.4536 * system.mass}), "the mass is 0.454 times", MU),
