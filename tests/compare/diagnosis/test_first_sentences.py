@@ -46,13 +46,9 @@ def ten_steps(system, start, times, *, step):
 
 
 def quantised(system, *_):
-    return (
-        round(256.0 * system.friction_force / system.mass / 9.81)
-        / 256.0
-        * 9.81
-        * system.mass
-        / system.friction_force
-    )
+    """Return the factor of μ that rounds it to a multiple of 1/256."""
+    share = 256.0 * system.friction_force / system.mass / 9.81
+    return round(share) / share
 
 
 def turned_with(factor):
@@ -89,14 +85,9 @@ def sliding_disc(name, law):
     return Engine(name, simulate, ("ring",), nonlinear=False, phases=False)
 
 
-def of_disc(**parameters):
-    """Return a change of a disc's parameters by factors."""
-    return lambda system: {name: factor * getattr(system, name, 0.0) for name, factor in parameters.items()}
-
-
-def on_points(number):
-    """Return a change of a disc's contact."""
-    return lambda system: {"contact_points": number}
+def disc(name, kind, change):
+    """Return the reference for one kind of disc, with the changed parameters."""
+    return replace(mistaken(name, change), kinds=(kind,))
 
 
 def along(slip):
@@ -106,26 +97,16 @@ def along(slip):
 
 MU = "the coefficient μ is"
 random = np.random.default_rng(3)
-calls = iter(range(10**9))
 
 WRONG = [
     # friction that depends on something
-    (
-        engine("place", factor=lambda z, _: 1.0 + 0.05 * abs(z)),
-        "changes with the place, by 5.0 % per m of",
-        MU,
-    ),
+    (engine("place", factor=lambda z, _: 1.0 + 0.05 * abs(z)), "changes with the place, by 5.0 % per m of"),
     (
         engine("x", factor=lambda z, _: 1.0 + 0.05 * z.real),
         "with the place, by 5.0 % per m along 0.0°",
         "fits",
     ),
-    (
-        engine("fades", factor=lambda _, t: max(1.0 - 0.1 * t, 0.5)),
-        "with the time or the place: it is 0.99",
-        MU,
-    ),
-    (engine("gives way", factor=lambda _, t: 1.0 if t < 2.0 else 0.6), "changes during a slide", "chatters"),
+    (engine("fades", factor=lambda _, t: max(1.0 - 0.1 * t, 0.5)), "with the time or the place: it is 0.99"),
     (
         engine("adhesion", limit=lambda system, *_: 1.0 + 1e-3 / system.friction_force),
         "by 0.0010 N at any load",
@@ -136,38 +117,17 @@ WRONG = [
         "at 1 kg, 0.2 N, 1 m/s and 1 m from the axis, the coefficient μ is 4.2",
         "%, ",
     ),
-    (
-        engine("power", limit=lambda system, *_: system.friction_force**-0.03),
-        "proportional to friction force^-0.03",
-        MU,
-    ),
-    (
-        engine("fast", limit=lambda _, speed, *__: float(speed < 50.0)),
-        "is missing at 0.0022 kg, 0.0010 N, 90 m/s",
-        MU,
-    ),
-    (
-        replace(engine("half"), function=turned_with(0.5)),
-        "assumes 0.5 times the speed of the master disc",
-        MU,
-    ),
-    (replace(engine("rpm"), function=turned_with(30.0 / math.pi)), "assumes 9.", MU),
+    (replace(engine("half"), function=turned_with(0.5)), "assumes 0.5 times the speed of the master disc"),
     # other forces
     (
         engine("tilted", push=lambda system, *_: 0.02 * system.mass),
         "accelerated by 0.020 m/s² along 0.0°",
         "spring",
     ),
-    (engine("wind", push=lambda *_: 1j), "a force of 1.0 N along 90.0° acts", "spring"),
     (
         engine("turning", push=lambda system, _, v: -0.02j * system.mass * v),
         "velocity turns by −0.020 rad/s",
         "Stribeck",
-    ),
-    (
-        engine("across", push=lambda system, _, v: 0.02j * v),
-        "0.020 N per m/s acts across every velocity",
-        "spring",
     ),
     (
         engine("drag", push=lambda system, _, v: -0.04 * system.mass * v),
@@ -177,11 +137,6 @@ WRONG = [
     (
         engine("air", push=lambda system, _, v: -1e-3 * v * abs(v)),
         "square of the speed, 0.0010 N per m²/s²",
-        "at once",
-    ),
-    (
-        engine("linear drag", push=lambda system, _, v: -0.1 * v),
-        "a drag of 0.10 N per m/s of the speed",
         "at once",
     ),
     (
@@ -203,7 +158,6 @@ WRONG = [
     (
         mistaken("damper twice", lambda system: {"damping": 2.0 * system.damping}),
         "damper force is 100 % too large",
-        MU,
     ),
     (
         mistaken(
@@ -217,20 +171,16 @@ WRONG = [
         "a body on springs loses 0.99 % of its speed per second",
         "spring force",
     ),
-    (mistaken("pounds", lambda system: {"mass": 0.4536 * system.mass}), "the mass is 0.454 times", MU),
+    (mistaken("pounds", lambda system: {"mass": 0.4536 * system.mass}), "the mass is 0.454 times"),
     # the output
     (
         around("degrees", scaled([5], 180.0 / math.pi), EVERY_KIND),
         "57.3 times the given spin, as if",
         "moment",
     ),
-    (around("other sense", scaled([5], -1.0), EVERY_KIND), "-1 times the given spin", "moment"),
-    (around("mirrored", scaled([3], -1.0)), "-1 times the given velocity along y", "spring"),
-    (around("velocities", scaled([2, 3], 1.01)), "1.01 times the given velocity", MU),
     (around("positions", scaled([0, 1], 1.01)), "moves by 1.01 times the integral of its velocity", "spring"),
     (around("late", in_other_time(lambda t: t - 1e-3)), "are returned 1.0 ms late", "converge"),
     (around("clock", in_other_time(lambda t: 1.01 * t)), "moves by 1.01 times the integral", "mass"),
-    (around("milliseconds", in_other_time(lambda t: 1e-3 * t)), "moves by 0.001 times the integral", "mass"),
     (around("nearest", on_grid(1e-2, nearest)), "as if states belonged to other times", "turntable"),
     (around("linear", on_grid(2e-2, linear)), "states lie on straight lines", "spring"),
     (
@@ -240,11 +190,6 @@ WRONG = [
     ),
     (in_batches("reversed", lambda *_: _[-1][::-1]), "in another order than asked", "shape"),
     (
-        in_batches("sorted", lambda s, *_: [_[-1][i] for i in np.argsort([one.mass for one in s])]),
-        "another order",
-        "shape",
-    ),
-    (
         in_batches(
             "shared",
             lambda s, starts, times, _: [
@@ -252,62 +197,45 @@ WRONG = [
             ],
         ),
         "motions of a batch differ by",
-        MU,
     ),
     # discs
     (
         sliding_disc("ellipsoid", lambda u, w, size: (u / size, w / size)),
         "of an ellipsoid with the limits μN and 1·μNR",
-        MU,
     ),
     (
         sliding_disc("separate", lambda u, w, _: (along(u), 2.0 / 3.0 * float(np.sign(w)))),
         "separate limits for slide and spin, μN and 0.667·μNR; it deviates from a ring by up to 87 % of μN",
-        MU,
     ),
     (sliding_disc("no spin friction", lambda u, *_: (along(u), 0.0)), "no friction against spin; it", "or"),
-    (sliding_disc("viscous spin", lambda u, w, _: (along(u), w)), "viscous friction against spin, 1 s/m", MU),
+    (sliding_disc("viscous spin", lambda u, w, _: (along(u), w)), "viscous friction against spin, 1 s/m"),
     (
-        replace(mistaken("four", on_points(4)), kinds=("ring",)),
+        disc("four", "ring", lambda _: {"contact_points": 4}),
         "the friction of 4 points; it deviates from a ring",
-        MU,
     ),
+    (disc("ring", "points", lambda _: {"contact_points": None}), "the friction of a ring; it deviates", "or"),
     (
-        replace(mistaken("ring", on_points(None)), kinds=("points",)),
-        "the friction of a ring; it deviates",
-        "or",
-    ),
-    (
-        replace(mistaken("cylinder", of_disc(polar_inertia=0.5)), kinds=("ring",)),
+        disc("cylinder", "ring", lambda s: {"polar_inertia": 0.5 * s.polar_inertia}),
         "0.5 times the right moment of in",
-        MU,
     ),
     (
-        replace(mistaken("radius", of_disc(contact_radius=0.95)), kinds=("ring",)),
+        disc("radius", "ring", lambda s: {"contact_radius": 0.95 * s.contact_radius}),
         "a ring of 0.95 times the radius",
-        MU,
     ),
     # calls and steps
     (
         with_coefficients("random", lambda: random.uniform(0.95, 1.05)),
         "equal calls return states that differ",
-        MU,
-    ),
-    (
-        with_coefficients("memory", lambda: 1.0 + 0.1 * (next(calls) % 2)),
-        "equal calls return states that differ",
-        MU,
     ),
     (replace(engine("ten steps"), function=ten_steps), "results do not change with the step", "damper"),
     (
         replace(engine("long steps"), function=lambda *motion, step: stepped(*motion, step=max(step, 1e-2))),
         "the same at steps of 0.004 and 0.008 s",
-        MU,
     ),
     (replace(engine("sleeps"), function=asleep), "it falls asleep, or friction grows", "static"),
-    (engine("soft start", factor=lambda _, t: float(t > 0.02)), "0 to 0.01 s after the start of a slide", MU),
+    (engine("soft start", factor=lambda _, t: float(t > 0.02)), "0 to 0.01 s after the start of a slide"),
 ]
-"""Wrong engines, a part of the first sentence of each, and words that the sentence must not contain."""
+"""Wrong engines, a part of the first sentence of each, and words that the sentence must not contain instead of μ."""
 
 
 def row_of(made):
@@ -321,12 +249,12 @@ def row_of(made):
     return row
 
 
-@pytest.mark.parametrize(("made", "said", "not_said"), WRONG, ids=[made.name for made, *_ in WRONG])
-def test_the_first_sentence_says_what_was_measured(made, said, not_said):
+@pytest.mark.parametrize("case", WRONG, ids=lambda case: case[0].name)
+def test_the_first_sentence_says_what_was_measured(case):
+    made, said, *others = case
     row = row_of(made)
-    first = row.sentences[0]
-    assert said in first
-    assert not_said not in first
+    assert said in row.sentences[0]
+    assert not any(other in row.sentences[0] for other in others or [MU])
     assert row.verdict != RIGHT
 
 
