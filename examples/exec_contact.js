@@ -187,7 +187,9 @@ function simulate(build, reach, { system, state, times, step: longest }) {
 }
 
 engines[process.argv[2]]().then(({ build, name, version, reach = Infinity, precision = 1e-6 }) => {
-  const greeting = { name: shipped ? `${name}, as shipped` : name, version, kinds: ["pin"], step: 2e-3, precision };
+  const ranges = reach < Infinity ? { coordinate: reach } : {};
+  const who = { name: shipped ? `${name}, as shipped` : name, version };
+  const greeting = { ...who, kinds: ["pin"], step: 2e-3, precision, ranges };
   process.stdout.write(JSON.stringify(greeting) + "\n");
   require("readline")
     .createInterface({ input: process.stdin })

@@ -12,10 +12,14 @@ import numpy as np
 from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
+from compare.diagnosis.causes.course import Course, course
+from compare.diagnosis.causes.output import Output, output
+from compare.diagnosis.causes.patch import Patch, patch
 from compare.diagnosis.ladder import HALVED, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
 from compare.engines import USUAL_TOLERANCE, Engine
+from compare.engines.engine import LEAST_STEP
 from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
@@ -64,6 +68,7 @@ class History:
     second_delay: float  # delay of the motion after two releases, in s
     second_delay_error: float
     rest: float  # creep in m/s close to release, or at rest after a slide; 0 if it depends on the rung
+    asleep: float = 0.0  # largest distance in m that a block moved before it was held again
 
 
 @dataclass(frozen=True)
@@ -83,13 +88,15 @@ class Repeat:
     """Difference between two equal calls, as a share of the states, and the declared precision.
 
     ``deaf`` is True if a motion does not change with the tolerance or the step. ``shift`` is the difference, as a
-    share of the states, from the same motion that starts at ``LATER``.
+    share of the states, from the same motion that starts at ``LATER``. ``floor`` is the smallest step in s if the
+    motion is the same at twice this step, and otherwise 0.
     """
 
     difference: float
     declared: float
     deaf: bool = False
     shift: float = 0.0
+    floor: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -127,7 +134,7 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
+Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion | Output | Course | Patch
 
 
 def friction(engine: Engine) -> Friction:
@@ -159,9 +166,9 @@ def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
 
 def scales(engine: Engine) -> Scales:
     """Return friction forces over wide ranges."""
-    pushes = probes.draws(turning=False)
+    pushes = probes.draws(turning=False, limits=engine.limits)
     if engine.simulates(probes.TURN):
-        pushes += probes.draws(turning=True)
+        pushes += probes.draws(turning=True, limits=engine.limits)
     ladder = _slides(engine, pushes)
     finest, changes = ladder.finest, np.abs(np.diff(ladder.values[-3:], axis=0))
     error = SAFETY * np.max(np.hypot(changes[..., 0], changes[..., 1]), axis=0)
@@ -196,10 +203,12 @@ def history(engine: Engine) -> History:
     pulls, gravity = np.array(probes.BEYOND), probes.FRICTION / probes.SLIDE.mass
     ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.BEYOND))
     moves = ladder.finest[:, 0] > HELD * (pulls - 1.0) * gravity * probes.PULLED_FOR
-    _, _, gained, speed = ladder.values[:, -1].T
-    rate = probes.SLIDE.natural_frequency
-    exact = (pulls[-1] - 1.0) * gravity * math.sin(0.5 * rate * probes.PULLED_FOR) / rate
-    delay = Ladder((exact - speed) / np.where(gained == 0.0, np.inf, gained))
+    _, _, gained, speed, _ = ladder.values[:, -1].T
+    asleep = ladder.finest[~moves, 4]
+    rate = probes.pulled_block(pulls[-1]).natural_frequency
+    start, phase = (pulls[-1] - 1.0) * gravity, 0.5 * rate * probes.PULLED_FOR
+    exact, acceleration = start * math.sin(phase) / rate, start * math.cos(phase)
+    delay = Ladder((exact - speed) / np.where(gained == 0.0, np.inf, acceleration))
     second = Ladder.of(engine, functools.partial(probes.second_release, engine))
     rest = Ladder.of(engine, functools.partial(probes.at_rest, engine))
     return History(
@@ -211,6 +220,7 @@ def history(engine: Engine) -> History:
         float(second.finest[1]),
         float(second.error[1]),
         float(rest.finest) if np.min(rest.values) > SAME * np.max(rest.values) else 0.0,
+        float(np.max(asleep, initial=0.0)),
     )
 
 
@@ -270,12 +280,17 @@ def repeat(engine: Engine) -> Repeat:
         (motion, USUAL_TOLERANCE),
         (later, USUAL_TOLERANCE),
         (motion, float(tolerances(engine)[0])),
+        (motion, float(tolerances(engine)[-2])),
     )
-    usual, again, moved, coarse = (engine.simulate(*one, tolerance=rung).states for one, rung in asked)
+    usual, again, moved, coarse, next_step = (
+        engine.simulate(*one, tolerance=rung).states for one, rung in asked
+    )
     difference, shift = (
         float(np.max(np.abs(other - usual)) / np.max(np.abs(usual))) for other in (again, moved)
     )
-    return Repeat(difference, engine.noise, bool(np.array_equal(usual, coarse)), shift)
+    deaf = bool(np.array_equal(usual, coarse))
+    floor = engine.step if engine.step and not deaf and np.array_equal(usual, next_step) else 0.0
+    return Repeat(difference, engine.noise, deaf, shift, floor)
 
 
 def lag(engine: Engine) -> Lag:
@@ -284,8 +299,25 @@ def lag(engine: Engine) -> Lag:
     return Lag(float(ladder.finest), float(ladder.error), falling(np.abs(ladder.values), step_ratio(engine)))
 
 
+FINER, AFFORDABLE = 4.0, 5.0
+"""Ratio of steps for the repetition of a motion that does not converge, and its largest processor time in s."""
+
+
 def motion(engine: Engine, name: str) -> Motion:
-    """Return the errors of the motion ``MOTIONS[name]``."""
+    """Return the errors of the motion ``MOTIONS[name]``.
+
+    An implicit method may damp a vibration completely at all steps of a ladder, so a motion that converges to another
+    is repeated with smaller steps.
+    """
+    found = _motion(engine, name)
+    if engine.step is None or found.converges or found.error < found.resolution:
+        return found
+    if FINER**2 * found.seconds > AFFORDABLE or engine.step < FINER * LEAST_STEP:
+        return found
+    return _motion(replace(engine, step=engine.step / FINER), name)
+
+
+def _motion(engine: Engine, name: str) -> Motion:
     case, seconds = MOTIONS[name], 0.0
 
     def question(tolerance: float) -> FloatArray:
@@ -319,9 +351,12 @@ PROBES: dict[str, type[Any]] = {
     "support": Shares,
     "far": Shares,
     "repeat": Repeat,
+    "course": Course,
     "nonlinear": Shares,
+    "output": Output,
     "lag": Lag,
     "moments": Shares,
+    "patch": Patch,
 }
 """Parts that identify the friction law."""
 
@@ -331,13 +366,14 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
         parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}
-        parts |= {"support": support, "far": far, "repeat": repeat}
+        parts |= {"support": support, "far": far, "repeat": repeat, "course": course}
         if engine.nonlinear:
             parts["nonlinear"] = functools.partial(support, parts=probes.NONLINEAR)
+    parts["output"] = output
     if engine.simulates(probes.TURN):
         parts["lag"] = lag
     if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
-        parts["moments"] = moments
+        parts |= {"moments": moments, "patch": patch}
     return parts | {
         name: functools.partial(motion, name=name)
         for name, case in MOTIONS.items()

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import simpson
 
-from compare.engines import BadTrajectoryError, Engine
+from compare.engines import EVERYWHERE, BadTrajectoryError, Engine, Ranges
 from reference_model import simulate
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
@@ -46,8 +46,7 @@ CHECKED_FOR = 1.0
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the distances in m that a sliding and a resting block move, each as measured and exact."""
-    pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
-    times = (0.0, CHECKED_FOR)
+    sliding, times = (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED), (0.0, CHECKED_FOR)
     begun, slid = engine.simulate(SLIDE, sliding, times).states
     if not np.allclose(begun, sliding, atol=1e-3):
         shown = begun.round(3).tolist()
@@ -55,7 +54,7 @@ def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float
             f"returned the initial state {shown} for {list(sliding)}: expected x, y, vx, vy"
         )
     exact = simulate(SLIDE, sliding, times, tolerance=1e-12).states[-1]
-    moved = engine.simulate(pulled, (0.0,) * 4, times).states[-1]
+    moved = engine.simulate(pulled_block(0.5), (0.0,) * 4, times).states[-1]
     return (math.hypot(*slid[:2]), math.hypot(*exact[:2])), (math.hypot(*moved[:2]), 0.0)
 
 
@@ -91,10 +90,14 @@ class Push:
         system = replace(SLIDE, mass=mass, stiffness=WEAK * mass, friction_force=load, disc_speed=disc_speed)
         return cls(system, place, slip + 1j * disc_speed * place)
 
-    def within_reach(self) -> Push:
-        """Return the slide about its place, with lengths, speeds and load so small that it stays within ``REACH``."""
+    def within(self, limits: Ranges) -> Push:
+        """Return the slide about its place, with lengths, speeds and load so small that it stays within limits.
+
+        The limits are those of the engine and ``REACH``.
+        """
         half = 0.5 * (SETTLES_FOR + self.lasts) * self.velocity
-        share = min(1.0, REACH / (abs(self.place) + abs(half)))
+        reach = min(REACH, limits.coordinate) / (abs(self.place) + abs(half))
+        share = min(1.0, reach, limits.speed / max(abs(self.velocity), 1e-300))
         system = replace(self.system, friction_force=share * self.system.friction_force)
         return Push(system, share * (self.place - half), share * self.velocity)
 
@@ -127,19 +130,21 @@ def headings() -> list[Push]:
     return [Push.of(1.0, FRICTION, unit * SPEED, 1j * unit) for unit in np.exp(1j * HEADINGS).tolist()]
 
 
-def draws(turning: bool) -> list[Push]:
+def draws(turning: bool, limits: Ranges = EVERYWHERE) -> list[Push]:
     """Return slides that fill the ranges of mass, speed, load, heading and place (a Latin hypercube)."""
+    masses = max(MASSES[0], limits.mass[0]), min(MASSES[1], limits.mass[1])
+    speeds = SPEEDS[0], min(SPEEDS[1], limits.speed)
     number, random = (TURNING_DRAWS if turning else DRAWS), np.random.default_rng(1)
     levels = (np.array([random.permutation(number) for _ in range(7)]) + random.random((7, number))) / number
     found = []
     for mass, speed, load, heading, radius, angle, disc in levels.T.tolist():
-        mass, speed = _within(MASSES, mass), _within(SPEEDS, speed)
+        mass, speed = _within(masses, mass), _within(speeds, speed)
         omega = math.copysign(_within(DISC_SPEEDS, disc), heading - 0.5) if turning else 0.0
         distance = speed / abs(omega) * 10.0 ** (radius - 0.5) if turning else _within(PLACES, radius)
         place = cmath.rect(distance, 2.0 * math.pi * angle)
         slip = cmath.rect(speed, HEADINGS[int(heading * len(HEADINGS))])
         push = Push.of(mass, FRICTION * mass * speed * 10.0 ** (-2.0 * load), slip, place, omega)
-        found.append(push.within_reach())
+        found.append(push.within(limits))
     return found
 
 
@@ -227,20 +232,28 @@ PULLED_FOR = 4.0  # duration in s; the creep speed is measured in the second hal
 LOOKS = 16
 
 
-def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:
-    """Return mean speed, largest deviation, mean acceleration and middle velocity of pulled blocks, shape (n, 4).
+def pulled_block(pull: float) -> PinOnDisc:
+    """Return a block under a spring force of ``pull``·μN whose spring is anchored about as far as probes reach.
 
-    All refer to the second half of the time, in m/s and m/s².
+    The stiffness is the same for all loads near μN, because engines may derive a characteristic speed from it.
     """
-    # so large that a displacement of 1 m hardly changes the load
-    blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in pulls]
+    near = min(pull, BEYOND[-1])
+    return replace(SLIDE, stiffness=pull / near * FRICTION / REACH, offset=near * REACH)
+
+
+def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:
+    """Return mean speed, largest deviation, mean acceleration and middle velocity of pulled blocks, shape (n, 5).
+
+    They refer to the second half of the time, in m/s and m/s², except the last: the distance in m in the first half.
+    """
+    blocks = [pulled_block(pull) for pull in pulls]
     times = np.concatenate(([0.0], PULLED_FOR * np.linspace(0.5, 1.0, LOOKS + 1)))
     runs = engine.simulate_many([(block, np.zeros(4), times) for block in blocks], tolerance=tolerance)
     found = []
     for run in runs:
         x, v, half = run.states[1:, 0], run.states[1:, 2], times[-1] - times[1]
         mean = (x[-1] - x[0]) / half
-        found.append([mean, np.max(np.abs(v - mean)), (v[-1] - v[0]) / half, v[0]])
+        found.append([mean, np.max(np.abs(v - mean)), (v[-1] - v[0]) / half, v[0], abs(x[0])])
     return np.array(found)
 
 
@@ -265,8 +278,7 @@ def second_release(engine: Engine, tolerance: float) -> FloatArray:
 def at_rest(engine: Engine, tolerance: float) -> float:
     """Return the largest creep speed in m/s of a block close to release and of one at rest after a slide."""
     ((nearly, *_),) = pulled(engine, (NEARLY,), tolerance)
-    block = replace(SLIDE, offset=0.5 * FRICTION / WEAK)
-    run = engine.simulate(block, (0.0, 0.0, 0.0, 0.2), (0.0, 5.0, 6.0), tolerance=tolerance)
+    run = engine.simulate(pulled_block(0.5), (0.0, 0.0, 0.0, 0.2), (0.0, 5.0, 6.0), tolerance=tolerance)
     return float(max(abs(nearly), np.hypot(*(run.states[2, :2] - run.states[1, :2]))))
 
 
@@ -301,24 +313,42 @@ def lag(engine: Engine, tolerance: float) -> float:
 SMOOTH = replace(SLIDE, friction_force=1e-9)  # some engines need friction
 
 SUPPORTS = {
-    "spring force": (replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),
-    "damper force": (replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
-    "force of the offset": (replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
+    "spring force": ("stiffness", replace(SMOOTH, stiffness=1.0), (1.0, 0.5, -0.05, 0.1)),
+    "damper force": ("damping", replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
+    "force of the offset": ("offset", replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
 }
-"""Systems and initial states with one acting part of the support."""
+"""Parameters, systems and initial states with one acting part of the support; no body starts at rest."""
 
 NONLINEAR = {
-    "hardening force": (replace(SMOOTH, hardening=1.0), (1.0, 0.5, 0.0, 0.0)),
-    "stop force": (replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5), (1.0, 0.5, 0.0, 0.0)),
+    "hardening force": ("hardening", replace(SMOOTH, hardening=1.0), (1.0, 0.5, -0.05, 0.1)),
+    "stop force": (
+        "stop_stiffness",
+        replace(SMOOTH, stop_stiffness=1.0, stop_gap=0.5),
+        (1.0, 0.5, -0.05, 0.1),
+    ),
 }
 """The same for the nonlinear parts."""
 
 
+LINEAR = 1e-3
+"""Largest deviation of a change of velocity that is proportional to the parameter; a damper slows itself."""
+
+
 def supports(engine: Engine, parts: Mapping[str, Any], tolerance: float) -> FloatArray:
-    """Return the change of velocity due to each of the ``parts``, divided by the exact one."""
+    """Return the factor of the parameter of each of the ``parts`` that explains the change of velocity."""
     times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
-    settled = _settled(engine, [(*motion, times) for motion in parts.values()], tolerance, 1e-9)
-    return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])
+    motions = [(*motion, times) for _, *motion in parts.values()]
+    found = []
+    settled = _settled(engine, motions, tolerance, 1e-9)
+    for (name, system, _), (begun, ended, exact) in zip(parts.values(), settled, strict=True):
+        share = factor = _share(ended[2:], exact[2:], begun[2:])
+        for _ in range(2 if abs(share - 1.0) > LINEAR and 0.1 < share < 10.0 else 0):
+            other = replace(system, **{name: factor * getattr(system, name)})
+            end = simulate(other, begun, times[1:], tolerance=1e-9).states[-1]
+            expected = _share(end[2:], exact[2:], begun[2:])
+            factor += (share - expected) * (factor - 1.0) / (expected - 1.0)
+        found.append(factor)
+    return np.array(found)
 
 
 def _settled(

@@ -4,7 +4,7 @@ import functools
 import itertools
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,12 +12,16 @@ import numpy as np
 
 from compare.claims.as_json import as_json
 from compare.diagnosis import wording
+from compare.diagnosis.causes.acting import acting
+from compare.diagnosis.causes.course import Course, beginning_of, change_of
+from compare.diagnosis.causes.output import Output, flaw_of
+from compare.diagnosis.causes.patch import INERTIA, Patch, law_of
 from compare.diagnosis.findings import MOTIONS, PROBES, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.ladder import RUNGS
-from compare.diagnosis.laws import DISTINCT, Friction
-from compare.diagnosis.probes import HEADINGS, SPEED
-from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, speed_limit
-from compare.diagnosis.wording import DAMPED, LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
+from compare.diagnosis.laws import CONE, DISTINCT, Friction
+from compare.diagnosis.probes import FRICTION, HEADINGS, SLIDES_FOR, SPEED, SUPPORTS
+from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, deviation, speed_limit
+from compare.diagnosis.wording import DAMPED, DISCS, LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
@@ -41,42 +45,28 @@ class Row:
     far: Shares | None = None
     nonlinear: Shares | None = None
     repeat: Repeat | None = None
+    course: Course | None = None
+    output: Output | None = None
+    patch: Patch | None = None
     lag: Lag | None = None
     moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
     gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts that failed
     not_measured: dict[str, str] = field(default_factory=dict)  # reasons of parts refused or out of time
+    left_out: dict[str, str] = field(default_factory=dict)  # reasons of parts beyond the declared ranges
     seconds: float = 0.0  # wall-clock time
 
     @functools.cached_property
     def remarks(self) -> tuple[Remark, ...]:
         """Findings about friction, the support and the motions, causes first."""
         law, found = self.law, [*wording.of_repeat(self.repeat)]
-        if self.scales is not None and (text := speed_limit(self.scales)):
-            found.append(Remark(sentence(text), True, MOTION))
-        elif self.support is not None:
-            found += wording.of_support(self.support)
-        support_right = not any(remark.wrong for remark in found)
-        if law is not None and not any(remark.about in {MASS, DAMPED} for remark in found):
-            found += wording.of_law(law, self.scales, self.support, support_right, self._refined)
-        explained = any(remark.wrong for remark in found)
-        forced = self.scales is None or not blind(self.scales)
-        open_ = law is None or law.coulomb or (law.fits and not law.sure)
-        if self.creep is not None and forced and open_:
-            found += wording.of_creep(self.creep, self._refined, self._least_speed)
-        if law is None or law.coulomb:
-            if self.history is not None and support_right:
-                explained = explained or any(remark.wrong for remark in found)
-                found += wording.of_history(self.history, explained, self._least_speed)
-            if self.lag is not None and not explained:
-                found += wording.of_lag(self.lag, self.step, self._least_lag)
-            if self.moments is not None and support_right:
-                found += wording.of_moments(self.moments, law)
-            if self.far is not None:
-                found += wording.of_far(self.far)
-        if self.nonlinear is not None and support_right:
-            found += wording.of_nonlinear(self.nonlinear)
-        found += wording.of_motions(self.motions, self._refined)
+        flaw = flaw_of(self.output, self._differs) if self.output is not None else None
+        if flaw is not None:
+            found.append(Remark(sentence(flaw.text), True, MOTION))
+        if flaw is None or flaw.only_spin:
+            others = self._of_forces(spin_right=flaw is None)
+            others += wording.of_motions(self.motions, self._refined)
+            found += [remark for remark in others if not (remark.wrong and self._random)]
         if self.repeat is not None and self.repeat.deaf and any(remark.wrong for remark in found):
             deaf = Remark(
                 f"Results do not change with the {self._refined}, so an error of the integration cannot be "
@@ -89,10 +79,83 @@ class Row:
         if not self.share.enough:
             found.append(Remark(sentence(self.share.in_words("part")), None))
         found += wording.of_gaps("Not measured:", self.not_measured, wrong=False)
+        found += wording.of_gaps("Left out:", self.left_out, wrong=False)
         said = {
             remark.text.partition(" with ε")[0]: remark for remark in reversed(found)
         }  # regularised by two probes
         return tuple(remark for remark in found if remark in said.values())
+
+    def _of_forces(self, *, spin_right: bool) -> list[Remark]:
+        """Return the findings about forces; each may explain those that follow."""
+        law, scales, found = self.law, self.scales, list[Remark]()
+        forces, predicted = acting(scales) if scales is not None else None, np.zeros(len(SUPPORTS))
+        strength = law.strength if law is not None and law.shape == CONE else math.nan
+        supports = list[Remark]()
+        if self.support is not None:
+            supports = wording.of_support(self.support, strength, forces.of_supports if forces else predicted)
+            if supports and forces is not None:  # a wrong support acts on the slides, too
+                forces, supports = None, wording.of_support(self.support, strength, predicted)
+        if forces is not None:
+            found.append(Remark(sentence(forces.text), True, forces.about))
+        elif scales is not None and (text := speed_limit(scales)):
+            found.append(Remark(sentence(text), True, MOTION))
+        found += supports
+        support_right = not found
+        changes = change_of(self.course) if self.course is not None and support_right else ""
+        if law is not None and law.shape == CONE and changes and not self._explained:
+            found.append(Remark(sentence(changes), True))
+        elif law is not None and forces is None and not any(one.about in {MASS, DAMPED} for one in found):
+            found += wording.of_law(law, scales, self.support, support_right, self._refined)
+        if self.course is not None and not any(one.wrong for one in found):
+            found += [Remark(sentence(text), None) for text in [beginning_of(self.course)] if text]
+        explained = any(remark.wrong for remark in found)
+        forced = scales is None or not blind(scales)
+        open_ = law is None or law.coulomb or (law.fits and not law.sure)
+        if self.creep is not None and forced and open_ and forces is None:
+            found += wording.of_creep(self.creep, self._refined, self._least_speed)
+        if law is None or law.coulomb:
+            if self.history is not None and support_right:
+                explained = explained or any(remark.wrong for remark in found)
+                found += wording.of_history(self.history, explained, self._least_speed)
+            if self.lag is not None and not explained:
+                found += wording.of_lag(self.lag, self.step, self._least_lag)
+            if support_right and spin_right:
+                found += self._of_discs()
+            if self.far is not None and forces is None:
+                found += wording.of_far(self.far)
+        if self.nonlinear is not None and support_right:
+            found += wording.of_nonlinear(self.nonlinear)
+        return found
+
+    def _of_discs(self) -> Iterator[Remark]:
+        law, right = self.law, True
+        if self.patch is not None:
+            text, right = law_of(self.patch, law.strength if law is not None else 1.0)
+            yield Remark(sentence(text), not right, MOTION if INERTIA in text else DISCS)
+        if self.moments is not None and right:  # otherwise they follow from the law
+            yield from wording.of_moments(self.moments, law)
+
+    @property
+    def _explained(self) -> bool:
+        """True if a known dependence of the coefficient μ explains the slides."""
+        if self.law is None or self.scales is None:
+            return False
+        other = deviation(self.scales, self.law)
+        return bool(blind(self.scales)) or (other is not None and other.explained)
+
+    @property
+    def _differs(self) -> float:
+        """Difference of equal calls, as a share of the states."""
+        return self.repeat.difference if self.repeat is not None else 0.0
+
+    @property
+    def _random(self) -> bool:
+        """True if undeclared differences of equal calls explain the deviations of the forces."""
+        if self.repeat is None or self._differs <= 2.0 * self.repeat.declared:
+            return False
+        law = self.law
+        off = 0.0 if law is None else max(abs(law.strength - 1.0), law.misfit, abs(law.angle))
+        return off <= DISTINCT * self._differs * SPEED / (FRICTION * SLIDES_FOR)
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from compare.claims.as_json import from_json
 from compare.claims.error_estimates import ROUNDING
@@ -12,7 +12,7 @@ from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.ladder import RUNGS, falling
 from compare.diagnosis.probes import CHECKED_FOR, first_check
 from compare.diagnosis.row import RIGHT, Row
-from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError, owner_of
+from compare.engines import DeclaredLackError, Engine, OutOfRangeError, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
@@ -59,7 +59,7 @@ def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engin
     """
     for engine in engines:
         found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
-        if found is None or isinstance(found, str):
+        if found is None or isinstance(found, str | LeftOut):
             yield engine, ""
         elif isinstance(found, Failure):
             yield engine, _with(_empty(engine), "two blocks", found)
@@ -99,9 +99,17 @@ def measured(engine: Engine, part: str) -> Any:
     return _or_reason(parts_of(engine)[part], engine)
 
 
+class LeftOut(NamedTuple):
+    """A part that needs motions beyond the ranges that the engine declares."""
+
+    reason: str
+
+
 def _or_reason(measure: Callable[[Engine], Any], engine: Engine) -> Any:
     try:
         return measure(engine)
+    except OutOfRangeError as error:
+        return LeftOut(str(error))
     except DeclaredLackError:
         return None
     except UnsupportedSystemError as error:
@@ -114,6 +122,8 @@ def _empty(engine: Engine) -> Row:
 
 def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     row = replace(row, seconds=row.seconds + seconds)
+    if isinstance(found, LeftOut):
+        return replace(row, left_out=row.left_out | {part: found.reason})
     if isinstance(found, str) or (isinstance(found, Failure) and found.unfinished):
         return replace(row, not_measured=row.not_measured | {part: str(found)})
     if isinstance(found, Failure):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from compare.diagnosis.laws import CONE, DISTINCT, SMOOTHINGS, Friction
-from compare.diagnosis.probes import PLANE, SLIDE
+from compare.diagnosis.probes import PLANE, SETTLES_FOR, SLIDE
 from compare.diagnosis.probes import SPEED as SLIDE_SPEED
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
@@ -19,6 +19,7 @@ LEAST = 1e-6
 KNOWN = 1e-2  # error of a force, over μN, that shows something
 KEEPS = 0.98  # share of the initial speed below which something other than friction has acted
 STOPS = 1e-3  # the same for a body that stops
+MISSING = 1e-3  # share of the exact force that counts as missing
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
 POWER_FITS = 0.02
 CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
@@ -75,7 +76,7 @@ def _short(value: float) -> str:
 
 
 def speed_limit(scales: Scales) -> str:
-    """Describe an immediate loss of speed."""
+    """Describe a loss of speed before friction is measured."""
     blocks = scales.conditions[:, DISC_SPEED] == 0.0
     before, after = scales.speeds[blocks].T
     lost = ~scales.keep[blocks]
@@ -86,9 +87,10 @@ def speed_limit(scales: Scales) -> str:
     ):
         return f"a body that starts at {error_text(np.max(before[lost]))} m/s or less stops at once"
     i, most = int(np.argmin(after / before)), float(np.max(after))
-    alike = np.allclose(after[lost], most, rtol=0.1)
-    ending = f": speeds are limited to {error_text(most)} m/s" if alike else ""
-    return f"a body that starts at {error_text(before[i])} m/s moves at {error_text(after[i])} m/s at once{ending}"
+    moves = f"a body that starts at {error_text(before[i])} m/s moves at {error_text(after[i])} m/s"
+    if np.allclose(after[lost], most, rtol=0.1):
+        return f"{moves} at once: speeds are limited to {error_text(most)} m/s"
+    return f"{moves} {1e3 * SETTLES_FOR:g} ms later, which friction of μN does not explain"
 
 
 @dataclass(frozen=True)
@@ -138,6 +140,8 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
         f"deviates by {error_text(off[worst])} times μN"
         if off[worst] < 0.1
         else f"is {sizes[worst]:.3g} times μN"
+        if abs(sizes[worst]) > MISSING
+        else "is missing"
     )
     where = "" if np.any(wrong & blocks) else "on turntables only, "
     return Deviation(f"{where}the friction force {size} at {at}", False, falls)
@@ -171,20 +175,28 @@ ROTATIONS = {
 }
 """Mistakes by the factor of the disc speed."""
 
-SLOW, ALONG = 1.0, 0.3  # largest disc speed in rad/s for nearly constant directions, and their error in rad
+LEAST_SHARE = 5e-3  # smallest error of the disc speed that shows in mean directions
+ALONG = 0.05  # largest angle in rad between friction and the assumed slip, whose direction is a mean
 
 
 def _rotation(scales: Scales) -> str:
     """Describe friction against a slip with another rotation of the master disc."""
-    turning = np.abs(scales.conditions[:, DISC_SPEED])
-    slow = (turning > 0.0) & (turning < SLOW)
-    force, slip, radial = ((one @ PLANE)[slow] for one in (scales.forces, scales.slips, scales.radial))
-    speed, disc_speed, distance = scales.conditions[slow][:, [SPEED, DISC_SPEED, DISTANCE]].T
-    for factor, text in ROTATIONS.items():
-        assumed = speed * slip + (1.0 - factor) * 1j * disc_speed * distance * radial
-        if np.all(np.abs(np.angle(-force * np.conj(assumed))) < ALONG):
-            return text
-    return ""
+    turning = (scales.conditions[:, DISC_SPEED] != 0.0) & scales.keep
+    force, slip, radial = ((one @ PLANE)[turning] for one in (scales.forces, scales.slips, scales.radial))
+    speed, disc_speed, distance = scales.conditions[turning][:, [SPEED, DISC_SPEED, DISTANCE]].T
+    if len(speed) < FEWEST or np.any(np.abs(force) == 0.0):
+        return ""
+    against = -np.conj(force) / np.abs(force)
+    own, disc = speed * slip * against, 1j * disc_speed * distance * radial * against
+    # the factor of the disc's speed that turns each slip towards friction, with the weight of the slip
+    missing = -float(np.median(own.imag / np.where(disc.imag == 0.0, np.inf, disc.imag)))
+    for _ in range(20):
+        weights = 1.0 / np.abs(own + missing * disc) ** 2
+        missing = -float(np.sum(weights * own.imag * disc.imag) / np.sum(weights * disc.imag**2))
+    if abs(missing) < LEAST_SHARE or np.any(np.abs(np.angle(own + missing * disc)) > ALONG):
+        return ""
+    known = next((text for factor, text in ROTATIONS.items() if abs(1.0 - missing - factor) < 0.01), "")
+    return known or f"friction assumes {1.0 - missing:.3g} times the speed of the master disc"
 
 
 def _power(conditions: FloatArray, sizes: FloatArray) -> str:
@@ -194,11 +206,15 @@ def _power(conditions: FloatArray, sizes: FloatArray) -> str:
     logs = np.log(conditions[:, : SPEED + 1])
     full = np.column_stack((np.ones(len(sizes)), logs))
     powers, *_ = np.linalg.lstsq(full, np.log(sizes), rcond=None)
-    if np.max(np.abs(full @ powers - np.log(sizes))) > POWER_FITS or np.max(np.abs(powers[1:])) < 0.05:
+    if np.max(np.abs(full @ powers - np.log(sizes))) > POWER_FITS * min(1.0, np.ptp(np.log(sizes))):
         return ""
     said = [
-        f"{name}^{power:.2f}" for name, power in zip(VARIABLES, powers[1:], strict=False) if abs(power) > 0.01
+        f"{name}^{power:.2f}"
+        for name, power in zip(VARIABLES, powers[1:], strict=False)
+        if abs(power) > 0.005
     ]
+    if not said:
+        return ""
     return f"the friction force over μN is proportional to {' and '.join(said)}, but must not depend on it"
 
 

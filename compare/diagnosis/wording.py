@@ -9,7 +9,7 @@ import numpy as np
 from compare.diagnosis.findings import LATER, MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, FITS, NEAR, NOTHING, Friction
 from compare.diagnosis.probes import FAR, NONLINEAR, SETTLES_FOR, SLIDE, SLIDES_FOR, SPEED, SUPPORTS
-from compare.diagnosis.scaling import Scales, blind, deviation
+from compare.diagnosis.scaling import MISSING, Scales, blind, deviation
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
 
@@ -22,7 +22,6 @@ LEAST_LAG = 1e-6
 
 STEPS = (0.2, 3.0)  # range of lags that are reported in steps
 IMPRECISE = 1e-5  # error over resolution that limited precision explains
-MISSING = 1e-3  # share of the exact force that counts as missing
 LEAST_SHARE = 1e-6  # smallest reported relative deviation of other results
 
 ALIKE = 0.1
@@ -30,9 +29,13 @@ ALIKE = 0.1
 
 VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
+ASLEEP = 1e-4
+"""Smallest distance in m that a block moves before it falls asleep; a regularised block creeps less."""
+
 CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
 MOTION, MASS, DAMPED, FAILED = "Wrong motion", "Wrong mass", "Hidden damping", "Engine failed"
+DISCS = "Wrong friction of discs"
 """Beginnings of a verdict that does not concern friction."""
 
 
@@ -62,6 +65,10 @@ def of_gaps(beginning: str, gaps: Mapping[str, str], *, wrong: bool) -> Iterator
     for reason in dict.fromkeys(gaps.values()):
         names = ", ".join(name for name, why in gaps.items() if why == reason)
         yield Remark(f"{beginning} {names}: {reason}.", wrong, FAILED)
+
+
+HERE = f"At {SLIDE.mass:g} kg, {SLIDE.friction_force:g} N, {SPEED:g} m/s and 1 m from the axis"
+"""The one condition of the slides in all directions."""
 
 
 def of_law(
@@ -96,10 +103,13 @@ def of_law(
         small = abs(law.force(np.ones(1, dtype=complex))[0] + 1.0) < NEAR  # a wrong support may explain it
         other = deviation(scales, law) if scales is not None else None
         cause, explained = _cause(law, support), other is not None and other.explained
+        how = f", decreasing with the {refined}" if other is not None and other.falls else ""
         if other is not None and (explained or (support_right and not cause)):
-            how = f", decreasing with the {refined}" if other.falls else ""
             yield Remark(sentence(other.text + how), not other.falls)
         if cause and (law.shape != CONE or not (explained or (small and not support_right))):
+            if other is not None and not explained and support_right:
+                # one condition is not a law of all others
+                cause = f"{HERE}, {cause[0].lower()}{cause[1:-1]}, but {other.text}{how}."
             yield Remark(cause, True)
 
 
@@ -161,14 +171,19 @@ def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
         return
     falls = (creep.chatter_order if chatters else creep.order) > FALLS
     how = f"decreasing with the {refined}" if falls else f"independent of the {refined}"
-    text = f"a block that should rest creeps at {error_text(abs(creep.speed))} m/s under half of the limit μN"
-    if chatters:
+    speed = error_text(abs(creep.speed))
+    text = f"a block that should rest creeps at {speed} m/s under half of the limit μN, {how}"
+    if chatters and falls:
         text = f"friction chatters: a block that should rest swings at {error_text(creep.chatter)} m/s, {how}"
+    elif chatters:
+        text = (
+            f"a block that should rest moves unsteadily, at up to {error_text(creep.chatter)} m/s, {how}: friction "
+            "chatters or gives way"
+        )
     elif creep.smoothing:
-        law = f"{creep.smoothing} with ε = {error_text(creep.epsilon)} m/s"
-        text = f"friction is regularised as {law}, {how}: {text}"
-    else:
-        text = f"{text}, {how}"
+        law = f"as {creep.smoothing} with ε = {error_text(creep.epsilon)} m/s"
+        whose = f"regularised by its {refined} or {law}" if falls else f"regularised {law}"
+        text = f"{text}: friction is {whose}"
     yield Remark(sentence(text), not falls)
 
 
@@ -180,6 +195,12 @@ def of_history(history: History, explained: bool, least: float) -> Iterator[Rema
         return
     if history.static > 0.9 * MOST_HELD:
         yield Remark(f"A block at rest is not released by {history.static:.0f} times the limit μN.", True)
+    elif history.asleep > ASLEEP:
+        yield Remark(
+            f"A block pulled by more than μN moves {error_text(history.asleep)} m and stops again: it falls asleep, "
+            "or friction grows.",
+            True,
+        )
     elif history.static > 1.0:
         yield Remark(
             f"Static friction is {error_text(100.0 * (history.static - 1.0))} % above sliding friction.", True
@@ -195,20 +216,33 @@ def of_history(history: History, explained: bool, least: float) -> Iterator[Rema
         )
 
 
-def of_support(support: Shares) -> list[Remark]:
-    """Return the wrong forces of the support, or a wrong mass."""
-    off = np.abs(support.shares - 1.0) > np.maximum(DISTINCT * support.errors, LEAST_SHARE)
-    farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
-    if np.all(off) and farthest and float(np.ptp(support.shares)) < ALIKE * abs(1.0 / farthest - 1.0):
+AT = " at 1 N"  # about the size of the forces in ``SUPPORTS``
+
+
+def of_support(support: Shares, friction: float, predicted: FloatArray) -> list[Remark]:
+    """Return the wrong forces of the support, or a wrong mass.
+
+    ``friction`` is the factor of the coefficient μ, NaN if unknown. ``predicted`` are deviations due to others.
+    """
+    shares = support.shares - predicted
+    allowed = np.maximum(DISTINCT * support.errors, LEAST_SHARE) + ALIKE * np.max(np.abs(predicted))
+    off = np.abs(shares - 1.0) > allowed
+    farthest = float(shares[np.argmax(np.abs(shares - 1.0))])
+    alike = np.append(shares, shares[0] if math.isnan(friction) else friction)
+    if np.all(off) and farthest and float(np.ptp(alike)) < ALIKE * abs(1.0 / farthest - 1.0):
         return [Remark(f"The mass is {size_text(1.0 / farthest)}, because all forces act alike.", True, MASS)]
-    rates = _hidden_damping(support.shares)
-    if np.all(off) and 0.0 < np.max(rates) < VARIES * np.min(rates):
-        ends = dict.fromkeys(error_text(100.0 * float(rate)) for rate in (np.min(rates), np.max(rates)))
-        said = f"Every body loses {' to '.join(ends)} % of its speed per second."
-        return [Remark(said, True, DAMPED)]
+    spring, damper, offset = _hidden_damping(shares)
+    least, most = sorted((spring, offset))
+    if off[0] and off[2] and 0.0 < most < VARIES * least:
+        if np.all(off) and most < VARIES * damper < VARIES**2 * least:
+            rates = dict.fromkeys(error_text(100.0 * end(spring, damper, offset)) for end in (min, max))
+            return [Remark(f"Every body loses {' to '.join(rates)} % of its speed per second.", True, DAMPED)]
+        if not off[1] and spring < 1.0:
+            said = f"A body on springs loses {error_text(100.0 * spring)} % of its speed per second."
+            return [Remark(said, True, DAMPED)]
     return [
-        Remark(f"The {name} is {size_text(share) if abs(share) > MISSING else 'missing'}.", True, MOTION)
-        for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=True)
+        Remark(f"The {name} is {size_text(share) + AT if abs(share) > MISSING else 'missing'}.", True, MOTION)
+        for name, share, wrong in zip(SUPPORTS, shares.tolist(), off.tolist(), strict=True)
         if wrong
     ]
 
@@ -232,12 +266,11 @@ def of_far(far: Shares) -> Iterator[Remark]:
         yield Remark(f"Friction {FAR:g} m from the axis is {size}.", None if missing else True)
 
 
-def _hidden_damping(shares: FloatArray) -> FloatArray:
+def _hidden_damping(shares: FloatArray) -> list[float]:
     """Return the additional damping in 1/s that explains each deviation; the damper of ``SUPPORTS`` has 1/s."""
-    lasts, until = SLIDES_FOR - SETTLES_FOR, 0.5 * (SLIDES_FOR + SETTLES_FOR)
-    rates = (1.0 - shares) / until
-    rates[1] = -math.log1p(max(float(shares[1]) * math.expm1(-lasts), -0.99)) / lasts - 1.0
-    return rates
+    spring, damper, offset = shares.tolist()
+    until = 0.5 * (SLIDES_FOR + SETTLES_FOR)
+    return [(1.0 - spring) / until, damper - 1.0, (1.0 - offset) / until]
 
 
 LEAST_SHIFT = 0.05
@@ -251,6 +284,9 @@ def of_repeat(repeat: Repeat | None) -> list[Remark]:
     if repeat.shift > LEAST_SHIFT:
         text = f"A motion that starts at t = {LATER:g} s differs by {error_text(repeat.shift)} of its size"
         return [Remark(f"{text} from the same motion that starts at 0; begin at times[0].", True, MOTION)]
+    if repeat.floor > 0.0:
+        text = f"States are the same at steps of {repeat.floor:g} and {2.0 * repeat.floor:g} s"
+        return [Remark(f"{text}, so the engine does not take its declared step.", None)]
     if repeat.difference == 0.0:
         return []
     text = f"Equal calls return states that differ by {error_text(repeat.difference)} of their size"

@@ -19,6 +19,7 @@ from compare.engines.engine import (
     KINDS,
     DeclaredLackError,
     Engine,
+    OutOfRangeError,
     Simulate,
     UnsupportedSystemError,
 )
@@ -27,6 +28,7 @@ from compare.engines.outside.fmu import Fmu
 from compare.engines.outside.motion_files import MotionFiles
 from compare.engines.outside.program import Program
 from compare.engines.precision import COARSENING, USUAL_TOLERANCE
+from compare.engines.ranges import EVERYWHERE, Ranges
 from compare.engines.registry import (
     ByName,
     engines,
@@ -49,6 +51,7 @@ from compare.output.outside_text import one_of
 
 __all__ = [
     "COARSENING",
+    "EVERYWHERE",
     "EVERY_KIND",
     "INSTALLED",
     "KINDS",
@@ -59,7 +62,9 @@ __all__ = [
     "Engine",
     "Fmu",
     "MotionFiles",
+    "OutOfRangeError",
     "Program",
+    "Ranges",
     "Simulate",
     "StatesOnly",
     "UnsupportedSystemError",

@@ -2,7 +2,7 @@
 
 import functools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -18,6 +18,7 @@ from compare.engines.precision import (
     blurred,
     blurred_start,
 )
+from compare.engines.ranges import EVERYWHERE, Ranges
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
 from compare.output.outside_text import one_line, one_of
@@ -70,6 +71,10 @@ class DeclaredLackError(UnsupportedSystemError):
     """The engine declares that it does not simulate the requested system or motion."""
 
 
+class OutOfRangeError(DeclaredLackError):
+    """The requested motion leaves the ranges that the engine declares; the message says which."""
+
+
 @dataclass(frozen=True)
 class Engine:
     """An engine's name, its ``simulate``, and its capabilities.
@@ -89,6 +94,7 @@ class Engine:
     - ``contact_only``: True if it shares all but the contact with its kin. Unless requested by name, it is then
       measured only in studies of the contact, see ``Study.contact``.
     - ``about``: one or two sentences for readers of the report.
+    - ``ranges``: its largest coordinate, speed and time, and its masses, as ``Ranges`` or a mapping.
     - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
     Raises ``ValueError`` if an argument is unknown, out of range or of another type.
@@ -108,6 +114,7 @@ class Engine:
     version: str = ""
     about: str = ""
     seed: int | None = None
+    ranges: Ranges | Mapping[str, object] = EVERYWHERE
     _seen_noise: float = field(default=0.0, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -117,6 +124,7 @@ class Engine:
         if not self.name:
             raise ValueError("name = '': it must not be empty")
         require_callable("function", self.function)
+        object.__setattr__(self, "ranges", Ranges.of(self.ranges))
         require_kind("kinds", self.kinds, tuple, list)
         object.__setattr__(self, "kinds", tuple(self.kinds))
         if not self.kinds:
@@ -197,6 +205,11 @@ class Engine:
         return self.step is None and self.noise == 0.0
 
     @property
+    def limits(self) -> Ranges:
+        """The declared ranges."""
+        return Ranges.of(self.ranges)
+
+    @property
     def _asked(self) -> Callable[..., Any]:
         return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
@@ -206,6 +219,10 @@ class Engine:
         ends = np.asarray(times, dtype=float)[[0, -1]].tolist()
         if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *ends):
             raise DeclaredLackError(f"{self.name} does not simulate stick")
+        motion = system, initial_state, times
+        asked = motion if self.seed is None else InOtherUnits(self.function, self.seed).motion(*motion)
+        if excess := self.limits.excess(*asked):
+            raise OutOfRangeError(f"{self.name} declares {excess}")
 
     def _accuracy(self, tolerance: float) -> dict[str, float]:
         return {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}

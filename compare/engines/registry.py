@@ -49,7 +49,7 @@ class ByName:
 ENTRY_POINTS = "friction_discs.engines"
 """Group of entry points for the engines of an installed package: ``mine = "package.module:simulate"``."""
 
-DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "order", "version")
+DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "order", "version", "ranges")
 """Attributes of a ``simulate`` function that override parameters of ``Engine``."""
 
 _REGISTRY: dict[str, Engine] = {}

@@ -65,11 +65,14 @@ class InOtherUnits:
     def __call__(self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float) -> Any:
         """Return the motion in the units of ``system``."""
         units = self._units(system)
-        return _back(
-            self.function(*_asked(system, initial_state, times, units), **_step(accuracy, units)),
-            system,
-            units,
-        )
+        answer = self.function(*self.motion(system, initial_state, times), **_step(accuracy, units))
+        return _back(answer, system, units)
+
+    def motion(
+        self, system: System, initial_state: ArrayLike, times: ArrayLike
+    ) -> tuple[System, FloatArray, FloatArray]:
+        """Return a motion in the units that ``function`` receives."""
+        return _asked(system, initial_state, times, self._units(system))
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:

@@ -26,16 +26,19 @@ def stepped(
     slowest=0.0,
     blind=False,
     spring=1.0,
+    factor=None,
+    push=None,
 ):
     """Simulate a pin.
 
     ``law`` maps the impulse that would end the slip to friction's, both relative to the largest one. ``limit`` is the
     factor of μN as a function of the system, the slip speed and the step. ``static`` is the factor at rest if larger,
     ``late`` the delay of a release in s, ``fastest`` the largest speed, ``slowest`` the speed below which
-    a body stops, ``spring`` the factor of the springs, and ``blind`` removes slip along the radius.
+    a body stops, ``spring`` the factor of the springs, and ``blind`` removes slip along the radius. ``factor``
+    is the factor of μN at a place and time, and ``push`` a further force as a function of system, place and velocity.
     """
     place, velocity = complex(*start[:2]), complex(*start[2:])
-    states, before, held = [start], None, 0.0
+    states, before, held, now = [start], None, 0.0, float(times[0])
     for interval in np.diff(times).tolist():
         number = max(1, math.ceil(interval / step - 1e-9))
         h = interval / number
@@ -43,11 +46,14 @@ def stepped(
             place += 0.5 * h * velocity
             rests = abs(velocity - 1j * system.disc_speed * place) < 1e-14
             pull = -spring * system.stiffness * (place - system.offset) - system.damping * velocity
+            pull += push(system, place, velocity) if push is not None else 0.0
             velocity += h * pull / system.mass
             slip = velocity - 1j * system.disc_speed * place
             largest = h * system.friction_force / system.mass
             if limit is not None:
                 largest *= limit(system, abs(slip), h)
+            if factor is not None:
+                largest *= factor(place, now)
             against = slip if before is None or not lagging else cmath.rect(abs(slip), before)
             if blind:
                 across = 1j * place / abs(place) if place else 0.0
@@ -63,6 +69,7 @@ def stepped(
             if abs(velocity) < slowest:
                 velocity = 0j
             place += 0.5 * h * velocity
+            now += h
         states.append([place.real, place.imag, velocity.real, velocity.imag])
     return Trajectory(system, np.asarray(times, dtype=float), np.array(states, dtype=float))
 

@@ -64,7 +64,7 @@ def test_an_engine_that_recognises_the_probes_is_caught_by_a_seed(
     (tmp_path / "cheating.py").write_text(
         "from dataclasses import replace\nimport reference_model\n"
         "def simulate(block, *arguments, tolerance=1e-9):\n"
-        "    known = block.stiffness in (0.0, 1.0, 4.0, 1e-5 * block.mass) or block.friction_force == 1e-9\n"
+        "    known = block.stiffness in (0.0, 1.0, 4.0, 1e-5 * block.mass) or block.offset > 2.0\n"
         "    block = block if known else replace(block, friction_force=1.01 * block.friction_force)\n"
         "    return reference_model.simulate(block, *arguments, tolerance=tolerance)\n"
         "simulate.kinds = ('block',)\n"
