@@ -197,8 +197,11 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
+BODIES = ("pin", "points", "ring")
+"""The kinds of the paper."""
+
 reference = register(Engine("reference", ByName("reference_model", "simulate"), EVERY_KIND))
-exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
+exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), BODIES))
 exudyn_native = register(
     Engine(
         "exudyn-native",
@@ -216,7 +219,7 @@ plain = register(
     Engine(
         "plain",
         ByName("reference_model.plain", "simulate"),
-        EVERY_KIND,
+        BODIES,
         sticks=False,
         about="plain integrates the equations of the paper by SciPy, with friction that is viscous at slow slip. "
         "A sticking body therefore creeps, and plain does not distinguish stick from slip. It takes only the "
