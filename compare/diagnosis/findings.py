@@ -11,7 +11,7 @@ import numpy as np
 
 from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import FIG11
-from compare.diagnosis import probes
+from compare.diagnosis import joint_probes, probes
 from compare.diagnosis.ladder import HALVED, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
@@ -127,7 +127,7 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
+Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion | joint_probes.Joint | float
 
 
 def friction(engine: Engine) -> Friction:
@@ -261,8 +261,10 @@ LATER = 4.0
 
 def repeat(engine: Engine) -> Repeat:
     """Return the differences between two equal calls and a later start."""
-    motion = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
-    if not engine.simulates(probes.TURN):
+    motion: Any = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
+    if not engine.simulates(probes.SWING):
+        motion = (joint_probes.JOINT, (0.0, joint_probes.STOPS), (0.0, 0.5))
+    elif not engine.simulates(probes.TURN):
         motion = (probes.SWING, (1.0, 0.0, 0.0, 0.0), (0.0, 0.5))
     later = (*motion[:2], tuple(LATER + time for time in motion[2]))
     asked = (
@@ -322,6 +324,8 @@ PROBES: dict[str, type[Any]] = {
     "nonlinear": Shares,
     "lag": Lag,
     "moments": Shares,
+    "joint": joint_probes.Joint,
+    "hour": float,
 }
 """Parts that identify the friction law."""
 
@@ -338,6 +342,8 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
         parts["lag"] = lag
     if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
         parts["moments"] = moments
+    if engine.simulates(joint_probes.JOINT):
+        parts |= {"repeat": repeat, "joint": joint_probes.joint, "hour": joint_probes.hour}
     return parts | {
         name: functools.partial(motion, name=name)
         for name, case in MOTIONS.items()

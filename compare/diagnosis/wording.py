@@ -153,19 +153,22 @@ def _deviations(law: Friction, support: Shares | None) -> list[str]:
     return found
 
 
-def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
-    """Yield whether a block at rest creeps or chatters, faster than ``least`` m/s."""
+def of_creep(
+    creep: Creep, refined: str, least: float, body: str = "block", unit: str = "m/s", limit: str = "μN"
+) -> Iterator[Remark]:
+    """Yield whether a ``body`` at rest creeps or chatters, faster than ``least`` in ``unit``."""
     chatters = creep.chatter > max(least, CHATTERS * abs(creep.speed))
     if not chatters and abs(creep.speed) < least:
-        yield Remark("A block loaded below μN stays at rest.", False)
+        yield Remark(f"A {body} loaded below {limit} stays at rest.", False)
         return
     falls = (creep.chatter_order if chatters else creep.order) > FALLS
     how = f"decreasing with the {refined}" if falls else f"independent of the {refined}"
-    text = f"a block that should rest creeps at {error_text(abs(creep.speed))} m/s under half of the limit μN"
+    speed = f"{error_text(abs(creep.speed))} {unit}"
+    text = f"a {body} that should rest creeps at {speed} under half of the limit {limit}"
     if chatters:
-        text = f"friction chatters: a block that should rest swings at {error_text(creep.chatter)} m/s, {how}"
+        text = f"friction chatters: a {body} that should rest swings at {error_text(creep.chatter)} {unit}, {how}"
     elif creep.smoothing:
-        law = f"{creep.smoothing} with ε = {error_text(creep.epsilon)} m/s"
+        law = f"{creep.smoothing} with ε = {error_text(creep.epsilon)} {unit}"
         text = f"friction is regularised as {law}, {how}: {text}"
     else:
         text = f"{text}, {how}"

@@ -43,7 +43,8 @@ KINDS = {
 }
 """Kinds of systems that an engine may simulate. A block is a pin on a disc at rest."""
 
-EVERY_KIND = tuple(KINDS)
+EVERY_KIND = ("block", "pin", "points", "ring")
+"""Kinds of the systems of the paper."""
 
 
 LEAST_STEP = 1e-9

@@ -197,11 +197,8 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
-BODIES = ("pin", "points", "ring")
-"""The kinds of the paper."""
-
-reference = register(Engine("reference", ByName("reference_model", "simulate"), EVERY_KIND))
-exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), BODIES))
+reference = register(Engine("reference", ByName("reference_model", "simulate"), (*EVERY_KIND, "joint")))
+exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
 exudyn_native = register(
     Engine(
         "exudyn-native",
@@ -219,7 +216,7 @@ plain = register(
     Engine(
         "plain",
         ByName("reference_model.plain", "simulate"),
-        BODIES,
+        EVERY_KIND,
         sticks=False,
         about="plain integrates the equations of the paper by SciPy, with friction that is viscous at slow slip. "
         "A sticking body therefore creeps, and plain does not distinguish stick from slip. It takes only the "
