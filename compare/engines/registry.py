@@ -198,12 +198,12 @@ def imported(name: str, place: str) -> Engine:
 
 
 reference = register(Engine("reference", ByName("reference_model", "simulate"), (*EVERY_KIND, "joint")))
-exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
+exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), (*EVERY_KIND, "joint")))
 exudyn_native = register(
     Engine(
         "exudyn-native",
         ByName("exudyn_models", "simulate_with_native_contact"),
-        ("pin", "points"),
+        ("pin", "points", "joint"),
         kin="exudyn",
         contact_only=True,
         about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. The "
