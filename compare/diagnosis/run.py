@@ -16,6 +16,7 @@ from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError, o
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
+from reference_model.friction_joint import FrictionJoint
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 IN_SHORT = 20.0  # in s for each part
@@ -127,9 +128,11 @@ SLACK = 1e-6  # stiffness in N/m of a spring that pulls with a constant force
 
 
 def benchmarked(engine: Engine) -> dict[str, Any]:
-    """Return the engine's results in ``friction_benchmark``, with weak springs for constant forces."""
+    """Return the engine's results in ``friction_benchmark``, with weak springs for constant forces on blocks."""
 
     def moved(case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
+        if case.inertia:
+            return _turned(engine, case, times)
         x, y, vx, vy = case.start
         common = {"mass": case.mass, "damping": case.damping, "friction_force": case.friction}
         common |= {"disc_speed": case.plate_speed, "stiffness": case.stiffness}
@@ -152,6 +155,23 @@ def benchmarked(engine: Engine) -> dict[str, Any]:
         return [(*state[:2], *state[half : half + 2]) for state in states.tolist()]
 
     return friction_benchmark.run(moved)
+
+
+def _turned(engine: Engine, case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
+    ends = [(time, case.force[0] + case.growth * time) for time in times]
+    joint = FrictionJoint(
+        inertia=case.inertia,
+        friction_moment=case.friction,
+        static_ratio=case.static_ratio,
+        damping=case.damping,
+        stiffness=case.stiffness,
+        moment=tuple(ends),
+    )
+    try:
+        states = engine.simulate(joint, case.start[::2], times).states
+    except UnsupportedSystemError as error:
+        raise NotImplementedError(str(error)) from None
+    return [(angle, 0.0, spin, 0.0) for angle, spin in states.tolist()]
 
 
 # --- Rows from recordings of foreign engines.
