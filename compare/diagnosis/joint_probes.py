@@ -90,7 +90,7 @@ SMOOTH = replace(JOINT, friction_moment=1e-9)  # some engines need friction
 SUPPORTS = {
     "spring moment": (replace(SMOOTH, stiffness=1.0), (1.0, 1.0)),
     "damping moment": (replace(SMOOTH, damping=1.0), (0.0, 1.0)),
-    "moment of the offset": (replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 1.0)),
+    "moment of the offset": (replace(SMOOTH, stiffness=0.01, offset=100.0), (0.0, 0.1)),
     "constant applied moment": (replace(SMOOTH, moment=((0.0, 1.0),)), (0.0, 1.0)),
     "changing applied moment": (replace(SMOOTH, moment=((0.0, 0.0), (0.08, 1.0), (0.1, 2.0))), (0.0, 1.0)),
 }
@@ -135,11 +135,21 @@ def loaded(engine: Engine, loads: Sequence[float], ratio: float, tolerance: floa
     return np.array(found)
 
 
-def breakaway(engine: Engine, ratio: float) -> float:
-    """Return the largest load/F that a joint holds from rest, to 1 %; ``ratio`` if it is right.
+def breakaway(engine: Engine, ratio: float) -> tuple[float, float]:
+    """Return the largest load/F that a joint holds from rest, to 1 %, and its friction/F afterwards.
 
-    NaN if the engine does not simulate joints with this static ratio.
+    The first is ``ratio`` if it is right. Both are NaN if the engine does not simulate joints with this static ratio.
     """
+    tolerance = float(tolerances(engine)[-1])
+    load = OVERLOAD * ratio
+    try:
+        ((_, _, gained, _),) = loaded(engine, (load,), ratio, tolerance)
+    except UnsupportedSystemError:
+        return math.nan, math.nan
+    return _held(engine, ratio), load - 2.0 * float(gained) / (HELD_FOR * RATE)
+
+
+def _held(engine: Engine, ratio: float) -> float:
     tolerance = float(tolerances(engine)[-1])
 
     def moves(load: float) -> bool:
@@ -147,11 +157,7 @@ def breakaway(engine: Engine, ratio: float) -> float:
         return bool(mean > MOVES * (load - 1.0) * RATE * 0.75 * HELD_FOR)
 
     least, most = 1.01, MOST_HELD
-    try:
-        early = ratio > 1.0 and moves(0.99 * ratio)
-    except UnsupportedSystemError:
-        return math.nan
-    if early:
+    if ratio > 1.0 and moves(0.99 * ratio):
         most = 0.99 * ratio
         if moves(least):
             return 1.0
@@ -271,7 +277,7 @@ class Joint:
     noise: FloatArray  # (draws,): error of the slides by precision and rounding
     supports: FloatArray  # (rungs, SUPPORTS): moments divided by the exact ones
     creeps: FloatArray  # (rungs, PULLS, 4), see ``loaded``
-    held: FloatArray  # (2,): largest load/F held with the static ratios 1 and ``RATIO``
+    held: FloatArray  # (2, 2), see ``breakaway``, with the static ratios 1 and ``RATIO``
     delays: FloatArray  # (rungs,): of the breakaway in s
     stops: FloatArray  # (rungs, 6), see ``stops``
     errors: FloatArray  # (rungs, states): errors of whole motions, relative to their sizes

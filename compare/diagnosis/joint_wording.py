@@ -42,8 +42,8 @@ RATES = 1.2  # largest ratio of the rates of one hidden damping
 
 CREEPS = 100.0  # ratio of a speed to the creep below which creep explains weak friction
 
-VARIABLES = ("inertia", "friction moment", "speed", "angle")
-UNITS = ("kg m²", "N m", "rad/s", "rad")
+VARIABLES = ("inertia", "friction moment", "speed", "angle", "direction and the speed")
+UNITS = ("kg m²", "N m", "rad/s", "rad", "rad/s")
 
 
 class _Number(NamedTuple):
@@ -95,7 +95,7 @@ def right(joint: Joint, refined: str, noise: float) -> str:
     error = max(*(_number(values, 1.0).error for values in joint.slides.T), *joint.noise)
     stop = 100.0 * max(_number(values, 1.0).error for values in joint.stops.T[:2])
     rests = abs(joint.creeps[-1, PULLS.index(0.5), 0]) <= _least(noise)
-    static = "" if np.isnan(joint.held[1]) else f", or at {RATIO:g} F with that static ratio"
+    static = "" if np.isnan(joint.held[1, 0]) else f", or at {RATIO:g} F with that static ratio"
     end = "stays at rest" if rests else f"creeps ever more slowly as the {refined} decreases"
     return (
         f"Coulomb friction in a joint, accurate to {error_text(error)} times its moment F: it breaks away at F"
@@ -186,16 +186,15 @@ def _of_shares(shares: FloatArray, error: float) -> str:
     if all(float(np.ptp(shares[way])) < ALIKE * spread for way in (spin > 0.0, spin < 0.0)):
         return f"{text}: it depends on the direction."
     middles = np.abs(angle + (SETTLES_FOR + 0.5 * SLIDES_FOR) * spin)
+    variables = inertia, friction, np.abs(spin), middles, spin
     causes = [
         f"{name} ({error_text(float(np.min(values)))} to {error_text(float(np.max(values)))} {unit})"
-        for name, unit, values in zip(
-            VARIABLES, UNITS, (inertia, friction, np.abs(spin), middles), strict=True
-        )
+        for name, unit, values in zip(VARIABLES, UNITS, variables, strict=True)
         if _is_monotone(shares[np.argsort(values)], DISTINCT * error + STEADY * spread)
     ]
     if len(causes) == 1:
         return f"{text}: it depends on the {causes[0]}."
-    return f"{text}: it depends on the {', the '.join(VARIABLES[:-1])} or the {VARIABLES[-1]}."
+    return f"{text}: it depends on the {', the '.join(VARIABLES[:-1])} or the direction."
 
 
 def _is_monotone(values: FloatArray, slack: float) -> bool:
@@ -213,12 +212,14 @@ def _rate(shares: FloatArray) -> float:
 
 def _of_breakaway(joint: Joint) -> Iterator[Remark]:
     """Yield a wrong breakaway moment, or a late breakaway."""
-    for held, ratio in zip(joint.held.tolist(), (1.0, RATIO), strict=True):
+    for (held, slides), ratio in zip(joint.held.tolist(), (1.0, RATIO), strict=True):
         of = f" with a static ratio of {ratio:g}" if ratio > 1.0 else ""
         if held <= 1.0 < ratio:
             text = f"The static ratio has no effect: a joint{of} breaks away at F."
         elif held > 30.0:
             text = f"A joint at rest does not break away under 30 times its moment F{of}."
+        elif ratio > 1.0 and abs(slides - 1.0) > HELD:
+            text = f"A joint{of} slides with {slides:.3g} F, in place of F."
         elif abs(held / ratio - 1.0) > HELD:
             text = f"A joint at rest{of} breaks away at {held:.3g} F, in place of {ratio:g} F."
         else:

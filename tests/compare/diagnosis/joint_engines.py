@@ -132,6 +132,30 @@ def changed(change):
     return simulate
 
 
+def karnopp(joint, start, times, *, step):
+    """Simulate by semi-implicit Euler steps, with rest below the speed that friction stops within a step."""
+    load, (angle, spin), found = load_of(joint), start, [start]
+    for begin, end in itertools.pairwise(times):
+        number = max(1, math.ceil((end - begin) / step - 1e-9))
+        h = (end - begin) / number
+        most = h * joint.friction_moment / joint.inertia
+        for i in range(number):
+            pull = load(begin + i * h, angle, spin)
+            if abs(spin) <= most and abs(pull) <= joint.static_ratio * joint.friction_moment:
+                spin = 0.0
+            else:
+                way = np.sign(spin) if abs(spin) > most else np.sign(pull)
+                spin += h * pull / joint.inertia - way * most
+            angle += h * spin
+        found.append((angle, spin))
+    return Trajectory(joint, np.asarray(times, dtype=float), np.array(found, dtype=float))
+
+
+def without_offset(joint, start, times, *, step):
+    """Simulate with a spring that is relaxed at 0."""
+    return stepped(replace(joint, offset=0.0), start, times, step=step)
+
+
 def three_points(joint, start, times, *, step):
     """Simulate with the first three points of the moment."""
     return stepped(replace(joint, moment=joint.moment[:3]), start, times, step=step)

@@ -6,7 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from joint_engines import changed, engine, euler, kicked, smooth, stepped, three_points
+from joint_engines import (
+    changed,
+    engine,
+    euler,
+    karnopp,
+    kicked,
+    smooth,
+    stepped,
+    three_points,
+    without_offset,
+)
 
 from compare.diagnosis import joint_probes, row
 from compare.diagnosis.findings import PROBES, parts_of
@@ -63,6 +73,21 @@ MISTAKEN = {
     "direction": (
         engine("direction", friction=lambda joint, spin, *at: 1.1 if spin > 0.0 else 1.0),
         f"{WHOLE}1.0 to 1.1 times F: it depends on the direction.",
+    ),
+    "direction and speed": (
+        engine("skew", friction=lambda joint, spin, *at: 1.0 + 0.2 * math.tanh(spin)),
+        f"{WHOLE}0.80 to 1.2 times F: it depends on the direction and the speed (",
+    ),
+    "inertia and speed": (
+        engine("both", friction=lambda joint, spin, *at: joint.inertia**0.1 * (1.0 + 0.1 * abs(spin))),
+        "it depends on the inertia, the friction moment, the speed, the angle or the direction.",
+    ),
+    "static while sliding": (
+        engine("rough", friction=lambda joint, *at: joint.static_ratio, static=1.0),
+        "a joint with a static ratio of 1.5 slides with 1.5 F, in place of F.",
+    ),
+    "offset ignored": (
+        engine("relaxed", without_offset), "Wrong motion: the moment of the offset of a joint is missing.",
     ),
     "angle": (
         engine("angle", friction=lambda joint, spin, angle, step: 1.0 + 0.1 * abs(angle)),
@@ -143,6 +168,11 @@ def test_engine_without_a_static_ratio_says_so():
     found = diagnosed(engine("without", refusing))
     assert found.verdict == RIGHT
     assert "it breaks away at F (±1 %), stops" in found.sentences[0]
+
+
+@pytest.mark.parametrize(("function", "how"), [(karnopp, {}), (karnopp, {"step": 5e-3})])
+def test_zero_band_that_shrinks_with_the_step_is_right(function, how):
+    assert diagnosed(engine("Karnopp", function, **how)).verdict == RIGHT
 
 
 def test_random_answers_are_not_taken_for_a_law():
