@@ -15,8 +15,8 @@ import numpy as np
 
 from compare.claims.error_estimates import ROUNDING
 from compare.diagnosis.ladder import SAFETY, Ladder, tolerances
-from compare.diagnosis.probes import PULLS, SETTLES_FOR, SLIDES_FOR
-from compare.engines import BadTrajectoryError, Engine, UnsupportedSystemError
+from compare.diagnosis.probes import CHECKED_FOR, PULLS, SETTLES_FOR, SLIDES_FOR
+from compare.engines import USUAL_TOLERANCE, BadTrajectoryError, Engine, UnsupportedSystemError
 from reference_model import FrictionJoint, simulate
 from reference_model.friction_joint import AnySystem
 from reference_model.systems import FloatArray
@@ -54,6 +54,14 @@ def asked(
             )
         found.append(run.states)
     return found
+
+
+def first_check_of_joints(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the angles in rad that a turning and a resting joint move, each as measured and exact."""
+    pulled, times = replace(JOINT, moment=((0.0, 0.5 * JOINT.friction_moment),)), np.array([0.0, CHECKED_FOR])
+    start = (0.0, 1.5 * RATE * CHECKED_FOR)
+    turned, moved = asked(engine, [(JOINT, start, times), (pulled, (0.0, 0.0), times)], USUAL_TOLERANCE)
+    return (float(turned[-1, 0]), float(simulate(JOINT, start, times).at_end[0])), (float(moved[-1, 0]), 0.0)
 
 
 def draws() -> FloatArray:

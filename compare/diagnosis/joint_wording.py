@@ -103,6 +103,16 @@ def right(joint: Joint, refined: str, noise: float) -> str:
     )
 
 
+def examined() -> str:
+    """Return a sentence with the ranges of the measured joints."""
+    inertia, friction, spin, _ = np.abs(draws()).T
+    ranges = (
+        f"{name} {error_text(float(np.min(values)))} to {error_text(float(np.max(values)))} {unit}"
+        for name, unit, values in zip(VARIABLES, UNITS, (inertia, friction, spin), strict=False)
+    )
+    return f"Joints examined: {', '.join(ranges)}; both directions."
+
+
 def _least(noise: float) -> float:
     """Return the speed in rad/s below which a joint is at rest."""
     return (RESTS + noise) * STOPS

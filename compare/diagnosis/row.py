@@ -121,6 +121,8 @@ class Row:
         if self.scales is not None:
             looked_at = [self.scales.looked_at, f"{len(HEADINGS)} headings"]
             said.append(f"Examined, with forces known to 1 %: {'; '.join(filter(None, looked_at))}.")
+        if self.joint is not None:
+            said.append(joint_wording.examined())
         return tuple(said)
 
     @property

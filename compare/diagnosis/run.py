@@ -9,8 +9,9 @@ from compare.claims.as_json import from_json
 from compare.claims.error_estimates import ROUNDING
 from compare.diagnosis import friction_benchmark
 from compare.diagnosis.findings import PROBES, Motion, parts_of
+from compare.diagnosis.joint_probes import JOINT, first_check_of_joints
 from compare.diagnosis.ladder import RUNGS, falling
-from compare.diagnosis.probes import CHECKED_FOR, first_check
+from compare.diagnosis.probes import CHECKED_FOR, SLIDE, first_check
 from compare.diagnosis.row import RIGHT, Row
 from compare.engines import DeclaredLackError, Engine, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
@@ -53,24 +54,28 @@ def diagnosed(
 
 
 def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
-    """Yield each engine with a sentence about two blocks, one that slides and one that should rest.
+    """Yield each engine with a sentence about two blocks, or two joints, one that moves and one that should rest.
 
-    The sentence is "" for an engine that does not simulate blocks. For an engine without a result it is replaced by
-    its row.
+    The sentence is "" for an engine that simulates neither. For an engine without a result it is replaced by its row.
     """
     for engine in engines:
-        found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
+        of_joints = engine.simulates(JOINT) and not engine.simulates(SLIDE)
+        check = first_check_of_joints if of_joints else first_check
+        found = workers.ask(_or_reason, check, engine, owner=owner_of(engine))
         if found is None or isinstance(found, str):
             yield engine, ""
         elif isinstance(found, Failure):
-            yield engine, _with(_empty(engine), "two blocks", found)
+            yield engine, _with(_empty(engine), "two joints" if of_joints else "two blocks", found)
         else:
             (slid, exact), (moved, rest) = found
-            text = f"a block slides {slid:.7g} m in {CHECKED_FOR:g} s (exact: {exact:.7g} m), "
-            yield (
-                engine,
-                f"{text}and a block under half of the limit μN moves {moved:.2g} m (exact: {rest:g} m)",
+            body, verb, limit, unit = (
+                ("joint", "turns", "F", "rad") if of_joints else ("block", "slides", "μN", "m")
             )
+            slides = f"a {body} {verb} {slid:.7g} {unit} in {CHECKED_FOR:g} s (exact: {exact:.7g} {unit})"
+            rests = (
+                f"a {body} under half of the limit {limit} moves {moved:.2g} {unit} (exact: {rest:g} {unit})"
+            )
+            yield engine, f"{slides}, and {rests}"
 
 
 def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:

@@ -18,10 +18,11 @@ from joint_engines import (
     without_offset,
 )
 
-from compare.diagnosis import joint_probes, row
+from compare.diagnosis import joint_probes, row, run
 from compare.diagnosis.findings import PROBES, parts_of
 from compare.diagnosis.row import RIGHT, UNDECIDED, WRONG
 from compare.engines import BadTrajectoryError, Engine, UnsupportedSystemError, reference
+from compare.run.workers import Workers
 from reference_model import simulate
 
 ROOT = {"shape": lambda slip: slip / np.hypot(slip, 1.0)}
@@ -132,6 +133,10 @@ def test_right_engine_of_joints_is_not_accused(name):
     smoothed = SOUND[name].step is None and name != "events"
     ends = "creeps ever more slowly as the tolerance decreases." if smoothed else "stays at rest."
     assert found.sentences[0].endswith(ends)
+    assert found.sentences[-1] == (
+        "Joints examined: inertia 0.0014 to 816 kg m², friction moment 1.5×10⁻⁶ to 85 N m, speed 0.014 to 74 rad/s; "
+        "both directions."
+    )
 
 
 @pytest.mark.parametrize("name", MISTAKEN)
@@ -173,6 +178,14 @@ def test_engine_without_a_static_ratio_says_so():
 @pytest.mark.parametrize(("function", "how"), [(karnopp, {}), (karnopp, {"step": 5e-3})])
 def test_zero_band_that_shrinks_with_the_step_is_right(function, how):
     assert diagnosed(engine("Karnopp", function, **how)).verdict == RIGHT
+
+
+def test_first_look_at_an_engine_of_joints_shows_two_joints():
+    with Workers(1, 60.0) as workers:
+        ((_, text),) = run.checked([replace(reference, kinds=("joint",))], workers)
+    assert text == (
+        "a joint turns 2 rad in 1 s (exact: 2 rad), and a joint under half of the limit F moves 0 rad (exact: 0 rad)"
+    )
 
 
 def test_random_answers_are_not_taken_for_a_law():
