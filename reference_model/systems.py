@@ -60,7 +60,7 @@ class _SupportedMass:
         for name, (unit, least) in self._parameters.items():
             value = values[name]
             if type(value) is not float or not least <= value <= MOST:
-                object.__setattr__(self, name, _checked_parameter(name, value, unit, least))
+                object.__setattr__(self, name, checked_parameter(name, value, unit, least))
         for name, (formula, ratio) in self._ratios().items():
             if ratio > MOST_RATIO:
                 raise ValueError(
@@ -178,7 +178,7 @@ class DiscOnDisc(_SupportedMass):
 
 System: TypeAlias = PinOnDisc | DiscOnDisc
 
-COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
+COLUMNS: dict[type, tuple[tuple[str, str], ...]] = {
     PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s")),
     DiscOnDisc: (("x", "m"), ("y", "m"), ("angle", "rad"), ("vx", "m/s"), ("vy", "m/s"), ("spin", "rad/s")),
 }
@@ -270,7 +270,8 @@ def require_flag(name: str, value: Any) -> None:
         raise ValueError(f"{name} = {shown(value)}: it must be True or False")
 
 
-def _checked_parameter(name: str, value: Any, unit: str, least: float) -> float:
+def checked_parameter(name: str, value: Any, unit: str, least: float) -> float:
+    """Return a parameter as a float; raise ``ValueError`` if it is below ``least`` or not finite."""
     number, positive = finite_number(name, value), least > 0.0
     if (positive and number <= 0.0) or number < 0.0 == least:
         allowed = "> 0" if positive else ">= 0"

@@ -6,7 +6,8 @@ from dataclasses import asdict, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc, System
+from reference_model.friction_joint import AnySystem
+from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc
 
 # --- Parameter sets that the paper prints.
 
@@ -66,14 +67,15 @@ BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
 
 
 def parameters_of(
-    system: System, *, without: Collection[str] = (), **changes: float
+    system: AnySystem, *, without: Collection[str] = (), **changes: float
 ) -> dict[str, float | str]:
     """Return the parameters of ``system`` except those in ``without``; ``changes`` adds or replaces some.
 
-    ``contact_points`` is "continuous ring" if it is None. Zero parameters of a nonlinear support are omitted.
+    ``contact_points`` is "continuous ring" if it is None. Zero parameters of a nonlinear support are omitted. The
+    moment of a joint is a text with its points.
     """
     parameters: dict[str, float | str] = {
-        name: "continuous ring" if value is None else value
+        name: "continuous ring" if value is None else str(value) if isinstance(value, tuple) else value
         for name, value in asdict(system).items()
         if name not in BEYOND_THE_SPRING or value != 0.0
     }
@@ -85,6 +87,6 @@ def at_each(name: str, values: ArrayLike) -> str:
     return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
 
 
-def components_of(system: System) -> tuple[str, ...]:
+def components_of(system: AnySystem) -> tuple[str, ...]:
     """Return the components of the state with units, such as "x in m"."""
     return tuple(f"{name} in {unit}" for name, unit in COLUMNS[type(system)])

@@ -61,7 +61,8 @@ def matrix(
 
     The command first prints the motions of a sliding and a resting block next to the exact numbers, which exposes a
     broken adapter. Short motions then identify the law: blocks and discs that slide at many masses, loads and speeds,
-    and blocks that are pulled from rest. The motions of the recorded engines follow. The command writes matrix.json
+    blocks that are pulled from rest, and joints that turn, hold and break away. The motions of the recorded engines
+    follow. The command writes matrix.json
     after each row. At the end it draws matrix.png and, if a law is wrong, friction.png with the measured forces.
 
     The exit status is 0 if at least half of the parts were measured and the engine is right, even if only with

@@ -26,7 +26,7 @@ Kinds = Annotated[
     typer.Option(
         "--kind",
         metavar="KIND",
-        help="Kind of system that your engine simulates: block, pin, points or ring; repeat for more kinds.",
+        help="Kind of system that your engine simulates: block, pin, points, ring or joint; repeat for more kinds.",
         show_default="pin",
     ),
 ]

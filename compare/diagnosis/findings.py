@@ -11,7 +11,7 @@ import numpy as np
 
 from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import FIG11
-from compare.diagnosis import probes
+from compare.diagnosis import joint_probes, probes
 from compare.diagnosis.causes.course import Course, course
 from compare.diagnosis.causes.output import Output, output
 from compare.diagnosis.causes.patch import Patch, patch
@@ -134,7 +134,21 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion | Output | Course | Patch
+Part = (
+    Friction
+    | Scales
+    | Creep
+    | History
+    | Shares
+    | Lag
+    | Repeat
+    | Motion
+    | Output
+    | Course
+    | Patch
+    | joint_probes.Joint
+    | float
+)
 
 
 def friction(engine: Engine) -> Friction:
@@ -271,8 +285,10 @@ LATER = 4.0
 
 def repeat(engine: Engine) -> Repeat:
     """Return the differences between two equal calls and a later start."""
-    motion = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
-    if not engine.simulates(probes.TURN):
+    motion: Any = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
+    if not engine.simulates(probes.SWING):
+        motion = (joint_probes.JOINT, (0.0, joint_probes.STOPS), (0.0, 0.5))
+    elif not engine.simulates(probes.TURN):
         motion = (probes.SWING, (1.0, 0.0, 0.0, 0.0), (0.0, 0.5))
     later = (*motion[:2], tuple(LATER + time for time in motion[2]))
     asked = (
@@ -357,6 +373,8 @@ PROBES: dict[str, type[Any]] = {
     "lag": Lag,
     "moments": Shares,
     "patch": Patch,
+    "joint": joint_probes.Joint,
+    "hour": float,
 }
 """Parts that identify the friction law."""
 
@@ -374,6 +392,8 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
         parts["lag"] = lag
     if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
         parts |= {"moments": moments, "patch": patch}
+    if engine.simulates(joint_probes.JOINT):
+        parts |= {"repeat": repeat, "joint": joint_probes.joint, "hour": joint_probes.hour}
     return parts | {
         name: functools.partial(motion, name=name)
         for name, case in MOTIONS.items()

@@ -10,7 +10,7 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,11 +18,15 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Case:
-    """A point mass, or a thin ring, on a horizontal plate that may rotate about the origin; SI units.
+    """A point mass, or a thin ring, on a horizontal plate that may rotate about the origin, or a joint; SI units.
 
     The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``.
     ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A ring lies on the plate under uniform
     pressure. It has the ``radius`` R, the moment of inertia m·R² and the initial ``spin``.
+
+    A case with an ``inertia`` is a joint about a fixed axis. Its angle is x, its spin vx, and all forces are moments;
+    the applied one grows from ``force[0]`` at the rate ``growth``. At rest, friction is at most ``static_ratio``
+    times ``friction``.
     """
 
     name: str
@@ -40,6 +44,9 @@ class Case:
     plate_speed: float = 0.0
     radius: float = 0.0
     spin: float = 0.0
+    inertia: float = 0.0
+    static_ratio: float = 1.0
+    growth: float = 0.0
 
 
 TOLERANCES = {"exact": 1e-6, "good": 1e-3, "fair": 1e-2}
@@ -62,6 +69,29 @@ def ramps() -> Iterator[Case]:
             yield Case(name, hold, (0.0,) * 4, 2.0, "x", path, path or 2.0 * hold, formula, force=(pull, 0.0))
 
 
+def joints() -> Iterator[Case]:
+    """Yield a joint that stops, one that breaks away, and one that a moment turns back."""
+    inertia, friction, spin = 0.5, 2.0, 2.0
+    start, rest = (0.0, 0.0, spin, 0.0), (0.0, 0.0, 0.0, 0.0)
+    # Friction slows the joint down at F/J from ω until it rests for good: φ = J·ω²/(2F).
+    angle = inertia * spin**2 / (2.0 * friction)
+    yield Case("joint, stop", friction, start, 2.0, "x", angle, angle, "J·ω²/(2F)", inertia=inertia)
+    # It holds until q·t = r·F. With τ since then, J·φ'' = (r − 1)·F + q·τ, so φ = ((r − 1)·F·τ²/2 + q·τ³/6)/J.
+    ratio, growth, until = 1.5, 2.0, 2.5
+    tau = until - ratio * friction / growth
+    angle = ((ratio - 1.0) * friction * tau**2 / 2.0 + growth * tau**3 / 6.0) / inertia
+    law = "φ = ((r − 1)·F·τ²/2 + q·τ³/6)/J after the time r·F/q"
+    case = Case("joint, breakaway", friction, rest, until, "x", angle, angle, law, inertia=inertia)
+    yield replace(case, static_ratio=ratio, growth=growth)
+    # A moment −M slows it down at (M + F)/J until t₁ = J·ω/(M + F), and then turns it back at (M − F)/J.
+    moment, until = 4.0, 1.0
+    slows = inertia * spin / (moment + friction)
+    back = (moment - friction) / inertia * (until - slows) ** 2 / 2.0
+    angle, law = spin * slows / 2.0 - back, "φ = ω·t₁/2 − (M − F)·(t − t₁)²/(2J) with t₁ = J·ω/(M + F)"
+    case = Case("joint, turned back", friction, start, until, "x", angle, back, law, inertia=inertia)
+    yield replace(case, force=(-moment, 0.0))
+
+
 def at_rest_after_swings(start: float, least: float) -> float:
     """Return where a mass on a spring, released at ``start`` > 0, stops; ``least`` = F/C."""
     swings = max(0, math.ceil((start - least) / (2.0 * least)))
@@ -73,7 +103,7 @@ def cases() -> tuple[Case, ...]:
     rest = at_rest_after_swings(9.5, 1.0)
     stop = (0.0, 0.0, 0.6, 0.8)
     swings = "x = (−1)ⁿ·(x₀ − 2n·F/C) after n half swings, with the first |x| ≤ F/C"
-    found = [*ramps()]
+    found = [*ramps(), *joints()]
     for mass in (0.01, 1.0, 100.0):
         path = mass * 1.0**2 / (2.0 * 3.0 * mass)
         name = f"stopping distance, {mass:g} kg"
@@ -93,15 +123,15 @@ def cases() -> tuple[Case, ...]:
         ),
         Case(
             "whirl on a turntable",
-            0.2,
+            1.0,
             (1.0, 0.0, 0.0, 1.0),
-            400.0,
+            80.0,
             "radius",
             2.0,
             2.0,
             "r = F/(c·√(C/m)), if the turntable is faster than √(C/m)",
             stiffness=1.0,
-            damping=0.1,
+            damping=0.5,
             plate_speed=2.0,
         ),
         # At v = ωR, friction averages 2/π of its limit and of its largest moment, so v/(ωR) stays 1 until both stop.

@@ -11,17 +11,19 @@ from pathlib import Path
 import numpy as np
 
 from compare.claims.as_json import as_json
-from compare.diagnosis import wording
+from compare.diagnosis import joint_wording, wording
 from compare.diagnosis.causes.acting import acting
 from compare.diagnosis.causes.course import Course, beginning_of, change_of
 from compare.diagnosis.causes.output import Output, flaw_of
 from compare.diagnosis.causes.patch import INERTIA, Patch, law_of
 from compare.diagnosis.findings import MOTIONS, PROBES, Creep, History, Lag, Motion, Repeat, Shares
-from compare.diagnosis.ladder import RUNGS
+from compare.diagnosis.joint_probes import Joint
+from compare.diagnosis.ladder import HALVED, RUNGS
 from compare.diagnosis.laws import CONE, DISTINCT, Friction
 from compare.diagnosis.probes import FRICTION, HEADINGS, SLIDES_FOR, SPEED, SUPPORTS
 from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, deviation, speed_limit
 from compare.diagnosis.wording import DAMPED, DISCS, LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
+from compare.engines import COARSENING
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
@@ -50,6 +52,8 @@ class Row:
     patch: Patch | None = None
     lag: Lag | None = None
     moments: Shares | None = None
+    joint: Joint | None = None
+    hour: float | None = None  # angle in rad that a joint at rest moves in an hour
     motions: dict[str, Motion] = field(default_factory=dict)
     gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts that failed
     not_measured: dict[str, str] = field(default_factory=dict)  # reasons of parts refused or out of time
@@ -65,7 +69,7 @@ class Row:
             found.append(Remark(sentence(flaw.text), True, MOTION))
         if flaw is None or flaw.only_spin:
             others = self._of_forces(spin_right=flaw is None)
-            others += wording.of_motions(self.motions, self._refined)
+            others += [*self._of_joint, *wording.of_motions(self.motions, self._refined)]
             found += [remark for remark in others if not (remark.wrong and self._random)]
         if self.repeat is not None and self.repeat.deaf and any(remark.wrong for remark in found):
             deaf = Remark(
@@ -173,9 +177,14 @@ class Row:
             said.insert(
                 0, f"The force and the moment of friction on a disc are right to {error} of their size."
             )
+        if self.joint is not None and self._repeats and all(one.wrong is False for one in self._of_joint):
+            at = 0 if first is None and self.law is None and self.moments is None else len(said)
+            said.insert(at, joint_wording.right(self.joint, self._refined, self._noise))
         if self.scales is not None:
             looked_at = [self.scales.looked_at, f"{len(HEADINGS)} headings"]
             said.append(f"Examined, with forces known to 1 %: {'; '.join(filter(None, looked_at))}.")
+        if self.joint is not None:
+            said.append(joint_wording.examined())
         return tuple(said)
 
     @property
@@ -192,6 +201,27 @@ class Row:
         measured = probes + sum(bool(motion.conclusive) for motion in self.motions.values())
         return Share(measured, probes + len(self.motions) + len(self.gaps) + len(self.not_measured))
 
+    @functools.cached_property
+    def _of_joint(self) -> tuple[Remark, ...]:
+        found: list[Remark] = []
+        if not self._repeats:
+            return ()  # any number may be chance
+        if self.joint is not None:
+            ratio = COARSENING if math.isnan(self.step) else HALVED
+            found += joint_wording.of_joint(self.joint, self._refined, ratio, self._noise)
+        if self.hour is not None and not any(remark.wrong for remark in found):
+            found += joint_wording.of_hour(self.hour, self.joint)
+        return tuple(found)
+
+    @property
+    def _repeats(self) -> bool:
+        """True if equal calls are not known to differ by more than the declared precision."""
+        return self.repeat is None or self.repeat.difference <= 2.0 * self.repeat.declared
+
+    @property
+    def _noise(self) -> float:
+        return max(self.repeat.difference, self.repeat.declared) if self.repeat is not None else 0.0
+
     @property
     def _refined(self) -> str:
         return "tolerance" if math.isnan(self.step) else "step"
@@ -199,8 +229,7 @@ class Row:
     @property
     def _least_speed(self) -> float:
         """Speed in m/s below which a block is at rest, by noise in the states."""
-        noise = max(self.repeat.difference, self.repeat.declared) if self.repeat is not None else 0.0
-        return (RESTS + noise) * SPEED
+        return (RESTS + self._noise) * SPEED
 
     @property
     def _least_lag(self) -> float:

@@ -9,13 +9,15 @@ from compare.claims.as_json import from_json
 from compare.claims.error_estimates import ROUNDING
 from compare.diagnosis import friction_benchmark
 from compare.diagnosis.findings import PROBES, Motion, parts_of
+from compare.diagnosis.joint_probes import JOINT, first_check_of_joints
 from compare.diagnosis.ladder import RUNGS, falling
-from compare.diagnosis.probes import CHECKED_FOR, first_check
+from compare.diagnosis.probes import CHECKED_FOR, SLIDE, first_check
 from compare.diagnosis.row import RIGHT, Row
 from compare.engines import DeclaredLackError, Engine, OutOfRangeError, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
+from reference_model.friction_joint import FrictionJoint
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 IN_SHORT = 20.0  # in s for each part
@@ -52,24 +54,28 @@ def diagnosed(
 
 
 def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
-    """Yield each engine with a sentence about two blocks, one that slides and one that should rest.
+    """Yield each engine with a sentence about two blocks, or two joints, one that moves and one that should rest.
 
-    The sentence is "" for an engine that does not simulate blocks. For an engine without a result it is replaced by
-    its row.
+    The sentence is "" for an engine that simulates neither. For an engine without a result it is replaced by its row.
     """
     for engine in engines:
-        found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
+        of_joints = engine.simulates(JOINT) and not engine.simulates(SLIDE)
+        check = first_check_of_joints if of_joints else first_check
+        found = workers.ask(_or_reason, check, engine, owner=owner_of(engine))
         if found is None or isinstance(found, str | LeftOut):
             yield engine, ""
         elif isinstance(found, Failure):
-            yield engine, _with(_empty(engine), "two blocks", found)
+            yield engine, _with(_empty(engine), "two joints" if of_joints else "two blocks", found)
         else:
             (slid, exact), (moved, rest) = found
-            text = f"a block slides {slid:.7g} m in {CHECKED_FOR:g} s (exact: {exact:.7g} m), "
-            yield (
-                engine,
-                f"{text}and a block under half of the limit μN moves {moved:.2g} m (exact: {rest:g} m)",
+            body, verb, limit, unit = (
+                ("joint", "turns", "F", "rad") if of_joints else ("block", "slides", "μN", "m")
             )
+            slides = f"a {body} {verb} {slid:.7g} {unit} in {CHECKED_FOR:g} s (exact: {exact:.7g} {unit})"
+            rests = (
+                f"a {body} under half of the limit {limit} moves {moved:.2g} {unit} (exact: {rest:g} {unit})"
+            )
+            yield engine, f"{slides}, and {rests}"
 
 
 def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
@@ -137,9 +143,11 @@ SLACK = 1e-6  # stiffness in N/m of a spring that pulls with a constant force
 
 
 def benchmarked(engine: Engine) -> dict[str, Any]:
-    """Return the engine's results in ``friction_benchmark``, with weak springs for constant forces."""
+    """Return the engine's results in ``friction_benchmark``, with weak springs for constant forces on blocks."""
 
     def moved(case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
+        if case.inertia:
+            return _turned(engine, case, times)
         x, y, vx, vy = case.start
         common = {"mass": case.mass, "damping": case.damping, "friction_force": case.friction}
         common |= {"disc_speed": case.plate_speed, "stiffness": case.stiffness}
@@ -162,6 +170,23 @@ def benchmarked(engine: Engine) -> dict[str, Any]:
         return [(*state[:2], *state[half : half + 2]) for state in states.tolist()]
 
     return friction_benchmark.run(moved)
+
+
+def _turned(engine: Engine, case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
+    ends = [(time, case.force[0] + case.growth * time) for time in times]
+    joint = FrictionJoint(
+        inertia=case.inertia,
+        friction_moment=case.friction,
+        static_ratio=case.static_ratio,
+        damping=case.damping,
+        stiffness=case.stiffness,
+        moment=tuple(ends),
+    )
+    try:
+        states = engine.simulate(joint, case.start[::2], times).states
+    except UnsupportedSystemError as error:
+        raise NotImplementedError(str(error)) from None
+    return [(angle, 0.0, spin, 0.0) for angle, spin in states.tolist()]
 
 
 # --- Rows from recordings of foreign engines.

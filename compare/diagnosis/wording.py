@@ -163,25 +163,27 @@ def _deviations(law: Friction, support: Shares | None) -> list[str]:
     return found
 
 
-def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
-    """Yield whether a block at rest creeps or chatters, faster than ``least`` m/s."""
+def of_creep(
+    creep: Creep, refined: str, least: float, body: str = "block", unit: str = "m/s", limit: str = "μN"
+) -> Iterator[Remark]:
+    """Yield whether a ``body`` at rest creeps or chatters, faster than ``least`` in ``unit``."""
     chatters = creep.chatter > max(least, CHATTERS * abs(creep.speed))
     if not chatters and abs(creep.speed) < least:
-        yield Remark("A block loaded below μN stays at rest.", False)
+        yield Remark(f"A {body} loaded below {limit} stays at rest.", False)
         return
     falls = (creep.chatter_order if chatters else creep.order) > FALLS
     how = f"decreasing with the {refined}" if falls else f"independent of the {refined}"
-    speed = error_text(abs(creep.speed))
-    text = f"a block that should rest creeps at {speed} m/s under half of the limit μN, {how}"
+    speed = f"{error_text(abs(creep.speed))} {unit}"
+    text = f"a {body} that should rest creeps at {speed} under half of the limit {limit}, {how}"
     if chatters and falls:
-        text = f"friction chatters: a block that should rest swings at {error_text(creep.chatter)} m/s, {how}"
+        text = f"friction chatters: a {body} that should rest swings at {error_text(creep.chatter)} {unit}, {how}"
     elif chatters:
         text = (
-            f"a block that should rest moves unsteadily, at up to {error_text(creep.chatter)} m/s, {how}: friction "
-            "chatters or gives way"
+            f"a {body} that should rest moves unsteadily, at up to {error_text(creep.chatter)} {unit}, {how}: "
+            "friction chatters or gives way"
         )
     elif creep.smoothing:
-        law = f"as {creep.smoothing} with ε = {error_text(creep.epsilon)} m/s"
+        law = f"as {creep.smoothing} with ε = {error_text(creep.epsilon)} {unit}"
         whose = f"regularised by its {refined} or {law}" if falls else f"regularised {law}"
         text = f"{text}: friction is {whose}"
     yield Remark(sentence(text), not falls)

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import FloatArray, System
+from reference_model.friction_joint import AnySystem
+from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase, Trajectory
 
 PHASES = ("slip", "pivot", "stick")
@@ -21,7 +22,7 @@ class BadTrajectoryError(RuntimeError):
     """An engine returned an invalid trajectory; the message says why."""
 
 
-def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
+def checked(trajectory: object, system: AnySystem, times: ArrayLike) -> Trajectory:
     """Return ``trajectory`` with arrays of its own if it is valid for ``system`` at ``times`` (n,).
 
     Raises ``TypeError`` if it is not a trajectory, and ``BadTrajectoryError`` if it is invalid.

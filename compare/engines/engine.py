@@ -22,11 +22,11 @@ from compare.engines.ranges import EVERYWHERE, Ranges
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
 from compare.output.outside_text import one_line, one_of
+from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.support import Support
 from reference_model.systems import (
     FloatArray,
     PinOnDisc,
-    System,
     finite_number,
     require_callable,
     require_flag,
@@ -40,10 +40,12 @@ KINDS = {
     "pin": "a pin",
     "points": "a disc on single points",
     "ring": "a disc on a continuous ring",
+    "joint": "a joint with friction",
 }
 """Kinds of systems that an engine may simulate. A block is a pin on a disc at rest."""
 
-EVERY_KIND = tuple(KINDS)
+EVERY_KIND = ("block", "pin", "points", "ring")
+"""Kinds of the systems of the paper."""
 
 
 LEAST_STEP = 1e-9
@@ -57,7 +59,7 @@ class Simulate(Protocol):
     """The one function that an engine must implement. All its approximations must improve with ``tolerance``."""
 
     def __call__(
-        self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+        self, system: AnySystem, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
     ) -> Trajectory:
         """Return the motion of ``system`` from ``initial_state`` (at ``times[0]``) at all ``times``."""
         ...
@@ -149,7 +151,7 @@ class Engine:
 
     def simulate(
         self,
-        system: System,
+        system: AnySystem,
         initial_state: ArrayLike,
         times: ArrayLike,
         *,
@@ -167,7 +169,7 @@ class Engine:
         return self._seen(answer, system, initial_state, times, tolerance)
 
     def simulate_many(
-        self, motions: Iterable[tuple[System, ArrayLike, ArrayLike]], *, tolerance: float = USUAL_TOLERANCE
+        self, motions: Iterable[tuple[AnySystem, ArrayLike, ArrayLike]], *, tolerance: float = USUAL_TOLERANCE
     ) -> list[Trajectory]:
         """Return the motion of each system from its initial state at its times.
 
@@ -213,7 +215,7 @@ class Engine:
     def _asked(self) -> Callable[..., Any]:
         return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
-    def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
+    def _refuse(self, system: AnySystem, initial_state: ArrayLike, times: ArrayLike) -> None:
         if not self.simulates(system):
             raise DeclaredLackError(self.lacking([system]))
         ends = np.asarray(times, dtype=float)[[0, -1]].tolist()
@@ -227,13 +229,13 @@ class Engine:
     def _accuracy(self, tolerance: float) -> dict[str, float]:
         return {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}
 
-    def _start(self, system: System, initial_state: ArrayLike, tolerance: float) -> ArrayLike:
+    def _start(self, system: AnySystem, initial_state: ArrayLike, tolerance: float) -> ArrayLike:
         if self.precision == 0.0:
             return initial_state
         return blurred_start(system, np.asarray(initial_state, dtype=float), self.precision, tolerance)
 
     def _seen(
-        self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
+        self, answer: object, system: AnySystem, initial_state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
@@ -248,6 +250,8 @@ class Engine:
             return looked_at(self._asked(system, start, times, **self._accuracy(tolerance)), times).states
 
         found = looked_at(answer, times)
+        if isinstance(system, FrictionJoint):  # no claim asks for its phases
+            return found
         if (self.phases and found.phases) or any(phase.kind != "slip" for phase in found.phases):
             return found
         if self.step is None:
@@ -264,14 +268,15 @@ class Engine:
         """Return the fixed step in s at ``tolerance``."""
         return (self.step or 0.0) * math.pow(tolerance / USUAL_TOLERANCE, 1.0 / self.root)
 
-    def simulates(self, system: System) -> bool:
+    def simulates(self, system: AnySystem) -> bool:
         """Return whether the engine simulates ``system``."""
-        return self._promises(kind_of(system)) and (self.nonlinear or Support.of(system).linear)
+        linear = self.nonlinear or isinstance(system, FrictionJoint) or Support.of(system).linear
+        return linear and self._promises(kind_of(system))
 
     def _promises(self, kind: str) -> bool:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
 
-    def lacking(self, systems: Iterable[System]) -> str:
+    def lacking(self, systems: Iterable[AnySystem]) -> str:
         """Return a sentence with the kinds of ``systems`` that are not simulated, or ""."""
         words = dict.fromkeys(
             KINDS[kind_of(system)] + (" on a nonlinear support" if self._promises(kind_of(system)) else "")
@@ -281,15 +286,17 @@ class Engine:
         return f"{self.name} does not simulate {' or '.join(words)}" if words else ""
 
 
-def kind_of(system: System) -> str:
+def kind_of(system: AnySystem) -> str:
     """Return one of ``KINDS``."""
+    if isinstance(system, FrictionJoint):
+        return "joint"
     if isinstance(system, PinOnDisc):
         return "block" if system.disc_speed == 0.0 else "pin"
     return "ring" if system.contact_points is None else "points"
 
 
 @functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances
-def _slips(system: System, initial_state: tuple[float, ...], start: float, end: float) -> bool:
+def _slips(system: AnySystem, initial_state: tuple[float, ...], start: float, end: float) -> bool:
     """Return whether the contact of the reference always slips."""
     import reference_model
 

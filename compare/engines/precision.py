@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from reference_model.systems import ANGLE, FloatArray, System
+from reference_model.friction_joint import AnySystem, FrictionJoint
+from reference_model.systems import ANGLE, FloatArray
 from reference_model.trajectory import Trajectory
 
 LEAST_PRECISE = 1e-3  # largest precision that an engine may declare
@@ -34,14 +35,16 @@ def are_single(states: FloatArray) -> bool:
     )
 
 
-def blurred_start(system: System, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
-    """Return ``state``, shape (4,) or (6,), with its position moved by noise of size ``precision``.
+def blurred_start(system: AnySystem, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
+    """Return ``state``, of any shape, with its position or angle moved by noise of size ``precision``.
 
     The velocity changes by that of the master disc, so a sticking body still sticks.
     """
     half = len(state) // 2
     moved = _blurred(state[np.newaxis], precision, tolerance, state)[0]
     moved[half:] = state[half:]
+    if isinstance(system, FrictionJoint):
+        return np.asarray(moved)
     x, y = (moved - state)[:ANGLE]
     moved[half : half + ANGLE] += system.disc_speed * np.array([-y, x])
     return np.asarray(moved)
@@ -69,7 +72,7 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
 def _sizes(states: FloatArray) -> FloatArray:
     half = states.shape[1] // 2
     sizes = np.max(np.abs(states), axis=0)
-    for x in (0, half):
+    for x in (0, half) if half >= ANGLE else ():
         sizes[x : x + ANGLE] = np.max(np.hypot(*states[:, x : x + ANGLE].T))
     return np.asarray(sizes)
 

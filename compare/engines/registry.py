@@ -197,13 +197,13 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
-reference = register(Engine("reference", ByName("reference_model", "simulate"), EVERY_KIND))
-exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), EVERY_KIND))
+reference = register(Engine("reference", ByName("reference_model", "simulate"), (*EVERY_KIND, "joint")))
+exudyn = register(Engine("exudyn", ByName("exudyn_models", "simulate"), (*EVERY_KIND, "joint")))
 exudyn_native = register(
     Engine(
         "exudyn-native",
         ByName("exudyn_models", "simulate_with_native_contact"),
-        ("pin", "points"),
+        ("pin", "points", "joint"),
         kin="exudyn",
         contact_only=True,
         about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. The "

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from reference_model.friction_joint import FrictionJoint
 from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Phase, Trajectory, phases_of
@@ -285,8 +286,10 @@ def _joined(times: Iterable[FloatArray]) -> FloatArray:
 
 
 def slip_of(run: Trajectory) -> FloatArray:
-    """Return the slip speed on the master disc in m/s, shape (n,), of centre and rim combined."""
+    """Return the slip speed on the master disc in m/s, of centre and rim combined; for a joint its spin in rad/s."""
     system = run.system
+    if isinstance(system, FrictionJoint):
+        return np.abs(run.states[:, 1])
     if isinstance(system, DiscOnDisc):
         rim = system.contact_radius * (run.states[:, -1] - system.disc_speed)
         return np.asarray(np.hypot(run.slip_speed, rim))

@@ -9,12 +9,13 @@ import itertools
 import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.systems import FloatArray, System
+from reference_model.friction_joint import AnySystem, FrictionJoint
+from reference_model.systems import FloatArray
 from reference_model.trajectory import Trajectory
 
 MOST = 5
@@ -45,8 +46,22 @@ DIMENSIONS = {
 """Powers of mass, length and time in each parameter."""
 
 
-def in_units(system: System, mass: float, length: float, time: float) -> System:
+Given = TypeVar("Given", bound=AnySystem)
+
+
+def in_units(system: Given, mass: float, length: float, time: float) -> Given:
     """Return ``system`` with other units of mass, length and time, given as multiples of these numbers."""
+    if isinstance(system, FrictionJoint):
+        inertia = mass * length**2
+        moment = inertia / time**2
+        return replace(
+            system,
+            inertia=system.inertia * inertia,
+            friction_moment=system.friction_moment * moment,
+            damping=system.damping * inertia / time,
+            stiffness=system.stiffness * moment,
+            moment=tuple((at * time, value * moment) for at, value in system.moment),
+        )
     changes = {
         name: getattr(system, name) * (mass ** float(m) * length ** float(d) * time ** float(t))
         for name, (m, d, t) in DIMENSIONS.items()
@@ -62,15 +77,17 @@ class InOtherUnits:
     function: Callable[..., Any]
     seed: int
 
-    def __call__(self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float) -> Any:
+    def __call__(
+        self, system: AnySystem, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
+    ) -> Any:
         """Return the motion in the units of ``system``."""
         units = self._units(system)
         answer = self.function(*self.motion(system, initial_state, times), **_step(accuracy, units))
         return _back(answer, system, units)
 
     def motion(
-        self, system: System, initial_state: ArrayLike, times: ArrayLike
-    ) -> tuple[System, FloatArray, FloatArray]:
+        self, system: AnySystem, initial_state: ArrayLike, times: ArrayLike
+    ) -> tuple[AnySystem, FloatArray, FloatArray]:
         """Return a motion in the units that ``function`` receives."""
         return _asked(system, initial_state, times, self._units(system))
 
@@ -83,7 +100,7 @@ class InOtherUnits:
     def _many(
         self,
         at_once: Callable[..., Any],
-        systems: Sequence[System],
+        systems: Sequence[AnySystem],
         initial_states: Sequence[ArrayLike],
         times: Sequence[ArrayLike],
         **accuracy: float,
@@ -96,19 +113,21 @@ class InOtherUnits:
             return answers
         return [_back(*one) for one in zip(answers, systems, units, strict=True)]
 
-    def _units(self, system: System) -> tuple[int, int, int]:
+    def _units(self, system: AnySystem) -> tuple[int, int, int]:
         return UNITS[zlib.crc32(repr((self.seed, system)).encode()) % len(UNITS)]
 
 
-def _factors(system: System, units: tuple[int, int, int]) -> FloatArray:
+def _factors(system: AnySystem, units: tuple[int, int, int]) -> FloatArray:
     _, length, time = units
+    if isinstance(system, FrictionJoint):
+        return np.array([1.0, 1.0 / 2.0**time])
     places = [2.0**length, 2.0**length] + [1.0] * (system.state_size // 2 - 2)
     return np.array(places + [place / 2.0**time for place in places])
 
 
 def _asked(
-    system: System, state: ArrayLike, times: ArrayLike, units: tuple[int, int, int]
-) -> tuple[System, FloatArray, FloatArray]:
+    system: AnySystem, state: ArrayLike, times: ArrayLike, units: tuple[int, int, int]
+) -> tuple[AnySystem, FloatArray, FloatArray]:
     return (
         in_units(system, *(2.0**power for power in units)),
         np.asarray(state, dtype=float) * _factors(system, units),
@@ -120,12 +139,12 @@ def _step(accuracy: dict[str, float], units: tuple[int, int, int]) -> dict[str, 
     return {name: value * 2.0 ** units[2] if name == "step" else value for name, value in accuracy.items()}
 
 
-def _back(answer: Any, system: System, units: tuple[int, int, int]) -> Any:
+def _back(answer: Any, system: AnySystem, units: tuple[int, int, int]) -> Any:
     """Return the answer in the units of ``system``; an invalid one is unchanged."""
     factors, second = _factors(system, units), 2.0 ** units[2]
     if not isinstance(answer, Trajectory) or np.shape(answer.states)[1:] != factors.shape:
         return answer
-    speed = factors[-1] if len(factors) == 4 else factors[3]
+    speed = factors[3] if len(factors) == 6 else factors[-1]
     return Trajectory(
         system,
         np.asarray(answer.times, dtype=float) / second,

@@ -19,7 +19,15 @@ PLACES = {
     ),
     "disc": ("fig08", "fig09", "fig11", "stability_map", "simulated_map", "contact_laws", "free_ring"),
     "plane": ("block", "thrown_disc", "pushes", "tosses"),
-    "drivetrain": ("run_up", "frozen", "momentum", "clutch_parts", "coupled_clutches", "exact_stick"),
+    "drivetrain": (
+        "run_up",
+        "frozen",
+        "momentum",
+        "clutch_parts",
+        "coupled_clutches",
+        "exact_stick",
+        "joints",
+    ),
     "engines": (
         "trajectories",
         "power_balance",

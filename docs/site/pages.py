@@ -17,7 +17,7 @@ REPORT = ROOT / "report"
 PAPER = ROOT / "docs" / "paper" / "paper.pdf"
 
 TASKS = {
-    "Describe a system": ("PinOnDisc", "DiscOnDisc"),
+    "Describe a system": ("PinOnDisc", "DiscOnDisc", "FrictionJoint"),
     "Simulate a motion": (
         *("simulate", "Trajectory", "Phase", "Solution", "SimulationError", "Pushing"),
         *("exudyn_models.simulate", "exudyn_models.simulate_fixed_step"),

@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike
 from exudyn_models.forces.laws.places import point_regularisation
 from exudyn_models.paper.alternating_solvers import Friction, Part
 from exudyn_models.paper.creep import WHOLE, RegularisedContact
+from exudyn_models.paper.joint import simulate_joint
 from exudyn_models.paper.scales import support_energy
 from exudyn_models.paper.simulate import METHODS, Run
 from exudyn_models.parts.native_contact import add_native_friction
 from exudyn_models.parts.ring_friction import checked_contact
+from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -28,13 +30,17 @@ from reference_model.trajectory import Trajectory
 
 
 def simulate_with_native_contact(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
+    system: AnySystem, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
     """Return the motion like ``simulate``, with Exudyn's built-in contact of a pin or of a disc on points.
+
+    A joint has Exudyn's built-in friction of a coordinate, see ``simulate_joint``.
 
     A stick phase ends when the slip reaches ε. After release the slip of a disc on points grows like t², so the phase
     ends about √ε late. Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring.
     """
+    if isinstance(system, FrictionJoint):
+        return simulate_joint(system, initial_state, times, tolerance=tolerance, native=True)
     state = checked_state(system, initial_state)
     grid = checked_times(times)
     run = Run.of(system, state, grid, checked_tolerance(tolerance), None)

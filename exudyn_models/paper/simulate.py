@@ -17,9 +17,11 @@ from exudyn_models.paper.alternating_solvers import (
     solve_in_turns,
 )
 from exudyn_models.paper.creep import RegularisedContact
+from exudyn_models.paper.joint import simulate_joint
 from exudyn_models.paper.scales import Scales, Units
 from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.solver_run import FIXED_STEP
+from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -60,7 +62,7 @@ METHODS = {"explicit": "Exudyn DOPRI5, generalised-α while sticking", "implicit
 
 
 def simulate(
-    system: System,
+    system: AnySystem,
     initial_state: ArrayLike,
     times: ArrayLike,
     *,
@@ -73,8 +75,11 @@ def simulate(
 
     Parameters
     ----------
-    initial_state : array of shape (4,) or (6,)
-        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
+    system
+        A joint sticks exactly by ``TrapezoidalIndex2``, and the last three parameters do not apply.
+    initial_state : array of shape (4,), (6,) or (2,)
+        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc; angle and spin of a
+        joint.
     times : array of shape (n,)
         Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
         the last time.
@@ -100,6 +105,8 @@ def simulate(
         If Exudyn fails, or would take more than some millions of steps.
 
     """
+    if isinstance(system, FrictionJoint):
+        return simulate_joint(system, initial_state, times, tolerance=tolerance)
     state = checked_state(system, initial_state)
     grid = checked_times(times)
     tolerance = checked_tolerance(tolerance)

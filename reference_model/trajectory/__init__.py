@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from reference_model.systems import FloatArray, System
+from reference_model.systems import FloatArray, require_system
 
 if TYPE_CHECKING:
     from reference_model.trajectory.pictures import Figure, FuncAnimation
@@ -105,11 +105,11 @@ class Trajectory:
     """The motion of a system at the requested times.
 
     ``times``, shape (n,), are in s. ``states``, shape (n, 4) or (n, 6), are x, y in m and vx, vy in m/s of a pin, or
-    x, y, angle (rad), vx, vy, spin (rad/s) of a disc. ``phases`` cover all times without gaps; () if the engine
-    reports none.
+    x, y, angle (rad), vx, vy, spin (rad/s) of a disc; a joint has shape (n, 2), its angle and spin. ``phases`` cover
+    all times without gaps; () if the engine reports none. Slip velocities and pictures exist for pins and discs only.
     """
 
-    system: System
+    system: Any  # a ``System`` or a ``FrictionJoint``
     times: FloatArray
     states: FloatArray
     phases: tuple[Phase, ...] = ()
@@ -134,6 +134,7 @@ class Trajectory:
     @property
     def slip_velocity(self) -> FloatArray:
         """Velocity of the centre relative to the master disc, (ẋ + ωy, ẏ − ωx) in m/s, shape (n, 2)."""
+        require_system(self.system)
         velocities = self.system.state_size // 2
         x, y = self.states.T[:2]
         vx, vy = self.states.T[velocities : velocities + 2]
@@ -175,4 +176,5 @@ class Trajectory:
         """
         from reference_model.trajectory.pictures import animation_of
 
+        require_system(self.system)
         return animation_of(self.system, self.times, self.states, places, speed)

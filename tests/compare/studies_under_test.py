@@ -24,7 +24,7 @@ from compare.engines import EVERY_KIND, Engine, engines
 
 
 def with_changed(change):
-    return Engine("changed", functools.partial(with_parameters, change), EVERY_KIND)
+    return Engine("changed", functools.partial(with_parameters, change), (*EVERY_KIND, "joint"))
 
 
 def altered(**factors):
@@ -103,7 +103,7 @@ If an engine may hold a body at rest, ε is small enough to limit creep.
 """
 
 GROSS = {
-    "half the friction": altered(friction_force=0.5),
+    "half the friction": altered(friction_force=0.5, friction_moment=0.5),
     "friction along the slip": made(friction=-1.0, **COARSE),
     "a box for the cone": made(sides=4, **FINER),
     "half the damping": altered(damping=0.5),

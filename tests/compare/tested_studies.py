@@ -417,6 +417,20 @@ ERROR_ESTIMATES = Tested(
     small=SMALL,
 )
 
+JOINTS = Tested(
+    STUDY["joints"],
+    gross={
+        "half the friction": altered(friction_moment=0.5),
+        "three times the friction": altered(friction_moment=3.0),
+        "no friction": altered(friction_moment=0.0),
+    },
+    small={
+        "friction 0.1 % off": altered(friction_moment=1.001),
+        "friction 1.5 % too weak": altered(friction_moment=0.985),
+        "inertia 1 % off": altered(inertia=1.01),
+    },
+)
+
 FOREIGN_ENGINES = Tested(STUDY["foreign-engines"], sound=(), drawn=False)
 
 TESTED: dict[str, Tested] = {

@@ -16,7 +16,8 @@ from compare.engines.answer import PHASES
 from compare.engines.engine import UnsupportedSystemError, kind_of
 from compare.engines.registry import DECLARED
 from compare.output.outside_text import one_line, one_of, printable
-from reference_model.systems import PinOnDisc, System, finite_number
+from reference_model.friction_joint import AnySystem
+from reference_model.systems import PinOnDisc, finite_number
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
 PROTOCOL = 1
@@ -66,7 +67,7 @@ def greeting(line: bytes) -> Greeting:
     return Greeting(promises, one_line(content.get("name", "")), one_line(content.get("version", "")), limit)
 
 
-def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[str, float]) -> bytes:
+def question(system: AnySystem, state: ArrayLike, times: ArrayLike, accuracy: dict[str, float]) -> bytes:
     """Return the line that requests a motion; ``accuracy`` is a tolerance, or a step in s."""
     ((name, value),) = accuracy.items()
     numbers = (_written(np.asarray(values, dtype=float).tolist()) for values in (state, times))
@@ -77,17 +78,17 @@ def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[
 
 
 @functools.lru_cache(maxsize=64)  # questions often have the same system
-def _system(system: System) -> str:
+def _system(system: AnySystem) -> str:
     kind = "pin" if isinstance(system, PinOnDisc) else kind_of(system)  # a block is a pin on a disc at rest
     return _written({"kind": kind} | asdict(system))
 
 
-def most_bytes(system: System, times: ArrayLike) -> int:
+def most_bytes(system: AnySystem, times: ArrayLike) -> int:
     """Return a length that no answer exceeds, even with all digits and phases."""
     return 1_000_000 + 100 * system.state_size * np.size(times)
 
 
-def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
+def answered(line: bytes, system: AnySystem, times: ArrayLike) -> Trajectory:
     """Return the motion in ``line`` at the requested times (n,), not yet checked.
 
     Raises ``UnsupportedSystemError`` or ``RefusedError`` if the line says so, and ``BadLineError`` if it is invalid.
@@ -126,7 +127,7 @@ def _array(name: str, rows: object) -> Any:
         ) from None
 
 
-def _phases(told: object, system: System, end: float) -> tuple[Phase, ...]:
+def _phases(told: object, system: AnySystem, end: float) -> tuple[Phase, ...]:
     begun = []
     for phase in told if isinstance(told, list) else [told]:
         if not isinstance(phase, dict) or phase.get("kind") not in PHASES:

@@ -19,7 +19,8 @@ from compare.engines.engine import KINDS, DeclaredLackError, Engine, Unsupported
 from compare.engines.outside.json_lines import question
 from compare.engines.registry import Scheme, register_scheme
 from compare.output.outside_text import printable
-from reference_model.systems import COLUMNS, FloatArray, System
+from reference_model.friction_joint import AnySystem
+from reference_model.systems import COLUMNS, FloatArray
 from reference_model.trajectory import Trajectory
 
 INDEX = "plan.json"
@@ -48,7 +49,7 @@ class MotionFiles:
         return {Path(self.folder, INDEX), *Path(self.folder).glob("*.csv")}
 
     def __call__(
-        self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
+        self, system: AnySystem, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
         """Return this motion from its file.
 
@@ -69,7 +70,7 @@ def name_of(line: bytes) -> str:
     return hashlib.sha256(line).hexdigest()[:12]
 
 
-def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
+def read_motion(path: Path, system: AnySystem, times: FloatArray) -> Trajectory:
     """Return the motion of ``system`` at ``times`` (n,) in s from a file."""
     place = f"{path.parent.name}/{path.name}"
     try:

@@ -14,7 +14,7 @@ from compare.engines.engine import Engine
 from compare.engines.outside import conversation
 from compare.engines.outside.commands import is_interpreter, name_of
 from compare.engines.registry import Scheme, register_scheme
-from reference_model.systems import System
+from reference_model.friction_joint import AnySystem
 from reference_model.trajectory import Trajectory
 
 
@@ -44,7 +44,7 @@ class Program:
         return files
 
     def __call__(
-        self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
+        self, system: AnySystem, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
         """Return the program's motion."""
         return conversation.simulate(self.command, self.folder, system, initial_state, times, **accuracy)

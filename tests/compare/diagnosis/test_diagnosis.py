@@ -454,7 +454,7 @@ def test_an_engine_of_discs_has_a_verdict_about_discs():
 def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     broken = Engine("broken", raises, ("block",))
     (row,) = run.diagnosed((broken,), limit=60.0)
-    assert set(row.gaps) == set(PROBES) - {"lag", "moments", "patch"}
+    assert set(row.gaps) == set(PROBES) - {"lag", "moments", "patch", "joint", "hour"}
     assert row.sentences[0].startswith(
         "Engine failed: no result for law, scales, creep, history, support, far, repeat, course, nonlinear, output: "
     )

@@ -44,7 +44,7 @@ def pooled(parts: Sequence[Measured]) -> Measured:
     first, *others = parts
     if not others:
         return first
-    systems = [part.system for part in parts if part.system is not None]
+    systems = [part.system for part in parts if isinstance(part.system, PinOnDisc | DiscOnDisc)]
     speeds = [system.disc_speed for system in systems]
     return Measured(
         predicted=np.concatenate([np.ravel(part.predicted) for part in parts]),
