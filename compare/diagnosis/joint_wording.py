@@ -11,13 +11,13 @@ from compare.diagnosis.joint_probes import HOUR, RATIO, STOPS, SUPPORTS, Joint, 
 from compare.diagnosis.ladder import SAFETY, falling
 from compare.diagnosis.laws import DISTINCT, smoothing_of
 from compare.diagnosis.probes import PULLS, SETTLES_FOR, SLIDES_FOR
+from compare.diagnosis.scaling import MISSING
 from compare.diagnosis.wording import (
     ALIKE,
     DAMPED,
     FALLS,
     LEAST_LAG,
     LEAST_SHARE,
-    MISSING,
     MOTION,
     RESTS,
     Remark,
