@@ -2,8 +2,7 @@
 
 - ``plain``: the paper's equations as printed, integrated by SciPy; read it first;
 - ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
-- ``simulation``: :func:`simulate` for the pin and the disc;
-- ``friction_joint``, ``joint_motion``: a joint with friction, and :func:`simulate` for all systems;
+- ``simulation``: :func:`simulate` for a pin, a disc and a joint with friction;
 - ``contact``: friction laws, their limit surfaces, and the quasi-static motion of a pushed body;
 - ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;
 - ``steady``: steady motions, their stability, and its boundaries;
@@ -26,12 +25,11 @@ if TYPE_CHECKING:
     from reference_model.contact.pushing import Pushing
     from reference_model.formulas.pin import sticking_radius
     from reference_model.formulas.power_balance import PowerBalance, power_balance
-    from reference_model.friction_joint import FrictionJoint
-    from reference_model.joint_motion import simulate
     from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
     from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
     from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
     from reference_model.orbits.shock import Shock, smallest_shock
+    from reference_model.simulation import simulate
     from reference_model.steady.stability import onset_load
     from reference_model.steady.steady_states import (
         SelfCentredEquilibrium,
@@ -45,6 +43,7 @@ if TYPE_CHECKING:
         why_no_whirl,
     )
     from reference_model.systems import DiscOnDisc, PinOnDisc
+    from reference_model.systems.joint import FrictionJoint
     from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 __version__ = "0.1.0"
@@ -92,8 +91,8 @@ __all__ = [
 ]
 
 _HOMES = (
-    "systems", "trajectory", "contact.points", "contact.contact_law", "contact.annulus", "friction_joint",
-    "joint_motion", "formulas.pin", "formulas.power_balance", "contact.pushing", "steady.stability",
+    "systems", "trajectory", "contact.points", "contact.contact_law", "contact.annulus", "systems.joint",
+    "formulas.joint", "simulation", "formulas.pin", "formulas.power_balance", "contact.pushing", "steady.stability",
     "steady.steady_states", "orbits.whirl", "orbits.shooting", "orbits.release_map", "orbits.basin_boundary",
     "orbits.shock",
 )  # fmt: skip

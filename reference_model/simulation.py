@@ -5,14 +5,15 @@ from numpy.typing import ArrayLike
 from reference_model.contact.contact_law import Contact, contact_of
 from reference_model.core.run import follow
 from reference_model.core.single import compiled_core, is_compilable, is_compiled, simulate_by
+from reference_model.formulas.joint import simulate_joint
 from reference_model.systems import (
     PinOnDisc,
-    System,
     checked_state,
     checked_times,
     checked_tolerance,
     require_flag,
 )
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 COMPILATION = 30.0
@@ -29,7 +30,7 @@ def prepare() -> None:
 
 
 def simulate(
-    system: System,
+    system: AnySystem,
     initial_state: ArrayLike,
     times: ArrayLike,
     *,
@@ -37,7 +38,7 @@ def simulate(
     contact: Contact | None = None,
     compiled: bool | None = None,
 ) -> Trajectory:
-    """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
+    """Return the motion of a pin, a disc or a joint under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
     Raises ``ValueError`` if an argument is invalid or compiled code does not know the contact, and
     ``SimulationError`` if the integrator fails.
@@ -48,7 +49,8 @@ def simulate(
         Parameters.
     initial_state : array-like of shape (4,) or (6,)
         State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s
-        for a disc. A state that turns with the master disc sticks if friction can hold it.
+        for a disc; angle and spin for a joint. A state that turns with the master disc sticks if friction can hold
+        it.
     times : array-like of shape (n,)
         Increasing times in s.
     tolerance
@@ -66,6 +68,10 @@ def simulate(
     global _interpreted
     if compiled is not None:
         require_flag("compiled", compiled)
+    if isinstance(system, FrictionJoint):
+        if contact is not None:
+            raise ValueError(f"contact = {contact}: a joint has no contact law; omit it")
+        return simulate_joint(system, initial_state, times, tolerance)
     start, moments = checked_state(system, initial_state), checked_times(times)
     tolerance = checked_tolerance(tolerance)
     law = contact_of(system, contact)

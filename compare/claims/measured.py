@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import COARSENING, change_as_error
-from reference_model.friction_joint import AnySystem
 from reference_model.systems import FloatArray, real_numbers, require_flag, require_kind
+from reference_model.systems.joint import AnySystem
 
 ONE = 0.5
 """Resolution of a count without open answers."""

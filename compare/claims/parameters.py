@@ -6,8 +6,8 @@ from dataclasses import asdict, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.friction_joint import AnySystem
 from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc
+from reference_model.systems.joint import AnySystem
 
 # --- Parameter sets that the paper prints.
 

@@ -61,9 +61,8 @@ def matrix(
 
     The command first prints the motions of a sliding and a resting block next to the exact numbers, which exposes a
     broken adapter. Short motions then identify the law: blocks and discs that slide at many masses, loads and speeds,
-    blocks that are pulled from rest, and joints that turn, hold and break away. The motions of the recorded engines
-    follow. The command writes matrix.json
-    after each row. At the end it draws matrix.png and, if a law is wrong, friction.png with the measured forces.
+    blocks that are pulled from rest, and joints that turn, hold and break away. The recorded motions follow. The
+    command writes matrix.json after each row, and at the end matrix.png and, if a law is wrong, friction.png.
 
     The exit status is 0 if at least half of the parts were measured and the engine is right, even if only with
     smaller steps. It is 1 if the engine is wrong or failed, 2 for bad input, 3 if less was measured or the verdict is

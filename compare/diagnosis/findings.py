@@ -15,6 +15,7 @@ from compare.diagnosis import joint_probes, probes
 from compare.diagnosis.causes.course import Course, course
 from compare.diagnosis.causes.output import Output, output
 from compare.diagnosis.causes.patch import Patch, patch
+from compare.diagnosis.joint_probes import Joint
 from compare.diagnosis.ladder import HALVED, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
@@ -30,15 +31,12 @@ HELD = 0.05  # a block is held if its mean speed is below this share of a Coulom
 
 MOST_HELD, BISECTIONS = 32.0, 20
 
-
-MOTIONS = CASES | {
-    "ring": replace(
-        CASES["disc"],
-        title="a disc on a ring",
-        sentence="A ring follows Coulomb's law",
-        system=FIG11,
-    )
+RING: dict[str, Any] = {
+    "title": "a disc on a ring",
+    "sentence": "A ring follows Coulomb's law",
+    "system": FIG11,
 }
+MOTIONS = CASES | {"ring": replace(CASES["disc"], **RING)}
 
 
 @dataclass(frozen=True)
@@ -146,7 +144,7 @@ Part = (
     | Output
     | Course
     | Patch
-    | joint_probes.Joint
+    | Joint
     | float
 )
 
@@ -373,7 +371,7 @@ PROBES: dict[str, type[Any]] = {
     "lag": Lag,
     "moments": Shares,
     "patch": Patch,
-    "joint": joint_probes.Joint,
+    "joint": Joint,
     "hour": float,
 }
 """Parts that identify the friction law."""

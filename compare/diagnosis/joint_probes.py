@@ -18,8 +18,8 @@ from compare.diagnosis.ladder import SAFETY, Ladder, tolerances
 from compare.diagnosis.probes import CHECKED_FOR, PULLS, SETTLES_FOR, SLIDES_FOR
 from compare.engines import USUAL_TOLERANCE, BadTrajectoryError, Engine, UnsupportedSystemError
 from reference_model import FrictionJoint, simulate
-from reference_model.friction_joint import AnySystem
 from reference_model.systems import FloatArray
+from reference_model.systems.joint import AnySystem
 
 JOINT = FrictionJoint(inertia=1.0, friction_moment=2.0)
 RATE = JOINT.friction_moment / JOINT.inertia

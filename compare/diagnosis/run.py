@@ -17,8 +17,8 @@ from compare.engines import DeclaredLackError, Engine, OutOfRangeError, Unsuppor
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
-from reference_model.friction_joint import FrictionJoint
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
+from reference_model.systems.joint import FrictionJoint
 
 IN_SHORT = 20.0  # in s for each part
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.friction_joint import AnySystem
 from reference_model.systems import FloatArray
+from reference_model.systems.joint import AnySystem
 from reference_model.trajectory import Phase, Trajectory
 
 PHASES = ("slip", "pivot", "stick")

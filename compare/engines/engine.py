@@ -22,7 +22,6 @@ from compare.engines.ranges import EVERYWHERE, Ranges
 from compare.engines.stick import StatesOnly, slip_of
 from compare.engines.units import InOtherUnits
 from compare.output.outside_text import one_line, one_of
-from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.support import Support
 from reference_model.systems import (
     FloatArray,
@@ -33,6 +32,7 @@ from reference_model.systems import (
     require_kind,
     require_whole,
 )
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 KINDS = {

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.systems import ANGLE, FloatArray
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 LEAST_PRECISE = 1e-3  # largest precision that an engine may declare

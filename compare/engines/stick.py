@@ -15,9 +15,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.friction_joint import FrictionJoint
 from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems.joint import FrictionJoint
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
 PER_PERIOD = 64  # samples per period or revolution, whichever is shorter

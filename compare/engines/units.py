@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.systems import FloatArray
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 MOST = 5

@@ -12,8 +12,8 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.items import items
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.solver_run import quiet
-from reference_model.friction_joint import FrictionJoint
 from reference_model.systems import FloatArray, checked_times, checked_tolerance, finite_numbers
+from reference_model.systems.joint import FrictionJoint
 from reference_model.trajectory import MOST_STEPS, SimulationError, Solution, Trajectory
 
 STEP = 10.0

@@ -17,7 +17,6 @@ from exudyn_models.paper.scales import support_energy
 from exudyn_models.paper.simulate import METHODS, Run
 from exudyn_models.parts.native_contact import add_native_friction
 from exudyn_models.parts.ring_friction import checked_contact
-from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -26,6 +25,7 @@ from reference_model.systems import (
     checked_times,
     checked_tolerance,
 )
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 

@@ -21,7 +21,6 @@ from exudyn_models.paper.joint import simulate_joint
 from exudyn_models.paper.scales import Scales, Units
 from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.solver_run import FIXED_STEP
-from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -33,6 +32,7 @@ from reference_model.systems import (
     require_choice,
     require_kind,
 )
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Solution, Trajectory, phases_of
 
 REGULARISATION_PER_TOLERANCE = 100.0

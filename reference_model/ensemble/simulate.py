@@ -45,7 +45,7 @@ def simulate_ensemble(
     """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
     The physics is that of :func:`reference_model.simulate`. Results do not depend in any bit on other trajectories or
-    the number of threads. Raises ``ValueError`` if an argument is invalid.
+    on ``threads``. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------
@@ -73,15 +73,11 @@ def simulate_ensemble(
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
     _require_same_number(len(starts), varied)
     in_lanes = _in_lanes(system, contact) and not varied.keys() & set(OF_SUPPORT)
-    duration = positive_number("duration", duration, "s")
-    tolerance = checked_tolerance(tolerance)
-    if threads is None:
-        threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    duration, tolerance = positive_number("duration", duration, "s"), checked_tolerance(tolerance)
+    threads = _processors() if threads is None else threads
     require_whole("threads", threads, least=1, most=MOST_THREADS)
     require_flag("early_end", early_end)
-
     task = Task(parameter_table(system, varied, () if in_lanes else OF_SUPPORT), starts, np.full(1, duration))
-    # Each driver loads its own compiled code.
     if not in_lanes:
         from reference_model.ensemble.disc.driver import simulate_any
 
@@ -95,6 +91,10 @@ def simulate_ensemble(
 
         results = simulate_discs(system, task, tolerance, early_end, bool(varied), threads)
     return results.ensemble(varied.get("friction_force", system.friction_force))
+
+
+def _processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _in_lanes(system: System, contact: Contact | None) -> bool:

@@ -32,7 +32,7 @@ from compare.engines.outside.json_lines import (
 )
 from compare.engines.outside.processor_time import PROGRAMS, is_over, processor_time_of
 from compare.output.outside_text import cause_of_end, printable
-from reference_model.friction_joint import AnySystem
+from reference_model.systems.joint import AnySystem
 from reference_model.trajectory import Trajectory
 
 GREETING_LIMIT = 60.0  # time limit in s for the first line; includes compilation

@@ -16,8 +16,8 @@ from compare.engines.answer import PHASES
 from compare.engines.engine import UnsupportedSystemError, kind_of
 from compare.engines.registry import DECLARED
 from compare.output.outside_text import one_line, one_of, printable
-from reference_model.friction_joint import AnySystem
 from reference_model.systems import PinOnDisc, finite_number
+from reference_model.systems.joint import AnySystem
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
 PROTOCOL = 1

@@ -19,8 +19,8 @@ from compare.engines.engine import KINDS, DeclaredLackError, Engine, Unsupported
 from compare.engines.outside.json_lines import question
 from compare.engines.registry import Scheme, register_scheme
 from compare.output.outside_text import printable
-from reference_model.friction_joint import AnySystem
 from reference_model.systems import COLUMNS, FloatArray
+from reference_model.systems.joint import AnySystem
 from reference_model.trajectory import Trajectory
 
 INDEX = "plan.json"

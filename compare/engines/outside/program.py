@@ -14,7 +14,7 @@ from compare.engines.engine import Engine
 from compare.engines.outside import conversation
 from compare.engines.outside.commands import is_interpreter, name_of
 from compare.engines.registry import Scheme, register_scheme
-from reference_model.friction_joint import AnySystem
+from reference_model.systems.joint import AnySystem
 from reference_model.trajectory import Trajectory
 
 

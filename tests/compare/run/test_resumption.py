@@ -149,7 +149,7 @@ def test_any_source_and_any_library_changes_the_stamp(tmp_path, monkeypatch):
     assert stamp.stamp() == before
     stamps = {before}
     for changed in (
-        "reference_model/systems.py",
+        "reference_model/systems/__init__.py",
         "fmu_models/sources/contact.c",
         "compare/foreign/mujoco.json",
     ):

@@ -1,4 +1,4 @@
-"""Exact motion of a joint with dry friction: closed forms between events, and simulation of any system.
+"""Exact motion of a joint with dry friction: closed forms between events.
 
 While the joint turns one way, friction is constant, and the applied moment is linear in time between its points. With
 γ = β/2J and κ = C/J, the motion is a combination of g₁, the response of the spin to a unit impulse, and its integrals
@@ -15,9 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-import reference_model.simulation
-from reference_model.contact.contact_law import Contact
-from reference_model.friction_joint import AnySystem, FrictionJoint
 from reference_model.numerics.roots import zero_between
 from reference_model.systems import (
     MOST,
@@ -25,8 +22,8 @@ from reference_model.systems import (
     checked_times,
     checked_tolerance,
     finite_numbers,
-    require_flag,
 )
+from reference_model.systems.joint import FrictionJoint
 from reference_model.trajectory import MOST_STEPS, Kind, SimulationError, Solution, Trajectory, phases_of
 
 SMALL, TERMS = 1.0, 24
@@ -36,40 +33,22 @@ APART = 2.0
 """Ratio of γ² to κ above which the two decay rates differ enough for divided differences."""
 
 
-def simulate(
-    system: AnySystem,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-    contact: Contact | None = None,
-    compiled: bool | None = None,
+def simulate_joint(
+    joint: FrictionJoint, initial_state: ArrayLike, times: ArrayLike, tolerance: float
 ) -> Trajectory:
-    """Return the motion of a pin, a disc or a joint under exact Coulomb friction.
-
-    Arguments and errors are those of :func:`reference_model.simulation.simulate`. The state of a joint is its angle
-    in rad and its spin in rad/s. Its motion is exact at any ``tolerance``, and it takes no ``contact``.
-    """
-    if not isinstance(system, FrictionJoint):
-        return reference_model.simulation.simulate(
-            system, initial_state, times, tolerance=tolerance, contact=contact, compiled=compiled
-        )
-    if contact is not None:
-        raise ValueError(f"contact = {contact}: a joint has no contact law; omit it")
-    if compiled is not None:
-        require_flag("compiled", compiled)
+    """Return the motion of a joint, which is exact at any ``tolerance``; see :func:`reference_model.simulate`."""
     state, moments = finite_numbers("initial_state", initial_state), checked_times(times)
     if state.shape != (2,) or np.any(abs(state) > MOST):
         raise ValueError(
             f"initial_state = {state.tolist()}: a joint takes an angle and a spin, of a size up to {MOST:g}"
         )
     began, (angle, spin) = time.perf_counter(), state.tolist()
-    run = _Run(system, float(moments[0]), angle, spin, float(moments[-1]))
+    run = _Run(joint, float(moments[0]), angle, spin, float(moments[-1]))
     states = run.states(moments)
     solution = Solution(
         "closed form", checked_tolerance(tolerance), 0, len(run.pieces), time.perf_counter() - began
     )
-    return Trajectory(system, moments, states, phases_of(run.begun(), float(moments[-1])), solution)
+    return Trajectory(joint, moments, states, phases_of(run.begun(), float(moments[-1])), solution)
 
 
 class _Responses(NamedTuple):
