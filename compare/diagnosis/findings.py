@@ -385,10 +385,11 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
         parts |= {"support": support, "far": far, "repeat": repeat, "course": course}
         if engine.nonlinear:
             parts["nonlinear"] = functools.partial(support, parts=probes.NONLINEAR)
-    parts["output"] = output
-    if engine.simulates(probes.TURN):
-        parts["lag"] = lag
-    if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
+    of_discs = any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6))
+    if of_discs or engine.simulates(probes.SMOOTH):
+        parts["output"] = output
+    parts |= {"lag": lag} if engine.simulates(probes.TURN) else {}
+    if of_discs:
         parts |= {"moments": moments, "patch": patch}
     if engine.simulates(joint_probes.JOINT):
         parts |= {"repeat": repeat, "joint": joint_probes.joint, "hour": joint_probes.hour}

@@ -46,7 +46,8 @@ LATE = "Not Coulomb friction in a joint: a joint breaks away "
 MISTAKEN = {
     "creeps": (
         engine("creeps", smooth, step=None, epsilon=1e-2, method="LSODA"),
-        "friction is regularised as tanh(v/ε) with ε = 0.010 rad/s, independent of the tolerance: a joint",
+        "rad/s under half of the limit F, independent of the tolerance: friction is regularised as tanh(v/ε) with "
+        "ε = 0.010 rad/s.",
     ),
     "no static ratio": (engine("static", static=1.0), "the static ratio has no effect: a joint with a static ratio"),
     "static ratio of 2": (engine("static", static=2.0), "a joint at rest breaks away at 2 F, in place of 1 F."),
