@@ -85,7 +85,7 @@ def turned_back(times: ArrayLike) -> FloatArray:
 
 
 def curves() -> Data:
-    t, ramp = np.linspace(0.0, 1.5 * STOPPING_TIME, 121), np.linspace(0.0, RAMPED[-1], 121)
+    t, ramp = np.linspace(0.0, WHILE_TURNING[-1] * STOPPING_TIME, 121), np.linspace(0.0, RAMPED[-1], 121)
     swings = np.linspace(0.0, SWINGS + 1.0, 401)
     turn = math.pi * math.sqrt(SPRUNG.inertia / SPRUNG.stiffness)
     return {
