@@ -37,7 +37,7 @@ KNOWN = 1e-2
 COARSE = 0.1  # the same for a stop, whose error is that of many steps
 
 HELD = 0.011  # largest relative error of a breakaway moment that is right; bisection ends at 1 %
-STEADY = 0.02  # largest spread of shares that are alike, relative to their deviation
+STEADY = 0.02  # largest spread of equal shares, relative to their deviation
 RATES = 1.2  # largest ratio of the rates of one hidden damping
 
 CREEPS = 100.0  # ratio of a speed to the creep below which creep explains weak friction

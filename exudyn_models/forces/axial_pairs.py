@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property, partial
 from operator import mul
@@ -138,6 +138,7 @@ class Mode(IntEnum):
 SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 
 
+@dataclass(eq=False, kw_only=True)
 class RowLaw:
     """Set-valued law of a force f along the gradient of one slip s, in one mode at a time.
 
@@ -153,16 +154,16 @@ class RowLaw:
     held directions that Exudyn knows. ``holds`` returns the forces of a contact at rest along its locks.
     """
 
-    reference: FloatArray
-    static_ratio: float
-    locks: tuple[int, ...]
-    mode: Mode | None
-    entered: tuple[Any, ...]
-    running: bool
-    point: int | None
-    on_axis: bool
-    largest: float
-    holds: Callable[[], FloatArray] | None
+    reference: FloatArray = field(default_factory=lambda: np.empty(0))
+    static_ratio: float = 1.0
+    locks: tuple[int, ...] = ()
+    mode: Mode | None = None
+    entered: tuple[Any, ...] = ()
+    running: bool = False
+    point: int | None = None
+    on_axis: bool = True
+    largest: float = 0.0
+    holds: Callable[[], FloatArray] | None = None
 
     @property
     def parts(self) -> Sequence[RowLaw]:
@@ -279,17 +280,7 @@ class AxialStick(RowLaw):
     """Friction between two bodies that turn about one axis, in one mode at a time."""
 
     kinds: Kinds
-    reference: FloatArray
     factors: LoadAndCoefficient
-    static_ratio: float
-    locks: tuple[int, ...] = ()
-    mode: Mode | None = None
-    entered: tuple[Any, ...] = ()
-    running: bool = False
-    point: int | None = None
-    on_axis: bool = True
-    largest: float = 0.0
-    holds: Callable[[], FloatArray] | None = None
 
     def renew(self) -> None:
         """Use the present load and coefficient; nothing to do here, because every call reads them."""

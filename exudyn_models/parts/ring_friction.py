@@ -201,12 +201,11 @@ def _sticking(
 ) -> Contact:
     ratio, factors = factors.static_ratio, factors.without_peak()
     stick: AxialStick
-    if kinds in ON_ONE_AXIS:
-        stick = AxialStick(kinds, reference, factors, ratio)
-    elif pins:
+    if pins and kinds not in ON_ONE_AXIS:
         stick = PointSticks.at(pins, kinds, reference, factors, ratio)
     else:
-        stick = PlanarStick(kinds, reference, factors, ratio)
+        law = AxialStick if kinds in ON_ONE_AXIS else PlanarStick
+        stick = law(kinds, factors, reference=reference, static_ratio=ratio)
     return Contact(
         kinds, reference, factors, {"force": stick.force, "jacobian": stick.jacobian}, stick, False
     )

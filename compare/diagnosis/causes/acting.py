@@ -28,7 +28,7 @@ FEWEST = 8
 """Smallest number of slides that identify a term."""
 
 MOST_LOST = 0.3
-"""Largest share of the speed that friction may remove; a body that stops has no mean direction."""
+"""Largest share of the speed that friction may remove, because the direction of a body that stops is unknown."""
 
 MOST = 3
 """Largest number of explanations that are named."""

@@ -16,8 +16,7 @@ def add_torsional_spring(
     in N m/rad) and damper (``damping`` >= 0 in N m s/rad) push together, but never pull. ``solve_dynamic`` locates
     each contact and separation with implicit solvers. Rotors are those of ``add_gear``.
 
-    Several of them side by side are a clutch damper of several stages, and ``add_ring_friction`` beside them its
-    hysteresis.
+    Several springs between the same rotors make a clutch damper with stages. ``add_ring_friction`` adds hysteresis.
     """
     nodes = list(rotors_of(mbs, first=first, second=second).values())
     if (damping := finite_number("damping", damping)) < 0.0:

@@ -99,8 +99,7 @@ class LoadedRows:
                 if law is None or not slides[i]:
                     continue
                 load, way = loads[law.place], int(states[i])
-                sign = 1.0 if load >= 0.0 else -1.0
-                slope = self.reduction[i] * way * sign * law.share(abs(load), load * way < 0.0)
+                slope = self.reduction[i] * law.slope_at(load, way)
                 system[i] += slope * self.by_force[law.place]
                 right[i] = -self.reduction[i] * way * law.preload - slope * self.loads[law.place]
             forces = np.linalg.solve(system, right)

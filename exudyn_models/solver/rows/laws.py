@@ -46,15 +46,6 @@ class RotaryLaw(RowLaw):
 
     weights: FloatArray
     data: Any
-    locks: tuple[int, ...] = ()
-    mode: Mode | None = None
-    entered: tuple[Any, ...] = ()
-    running: bool = False
-    point: int | None = None
-    on_axis: bool = True
-    largest: float = 0.0
-    static_ratio: float = 1.0
-    holds: Callable[[], FloatArray] | None = None
 
     def __post_init__(self) -> None:
         self.reference = np.zeros(len(self.weights))
@@ -142,6 +133,11 @@ class MeshLaw(RotaryLaw):
         """Return the largest friction in N m against a slip in a direction, ±1, at a moment T in N m."""
         return self.preload + self.share(abs(load), load * direction < 0.0) * abs(load)
 
+    def slope_at(self, load: float, direction: int) -> float:
+        """Return the derivative by T of the friction against a slip in a direction, ±1, or 0 without slip."""
+        share = self.share(abs(load), load * direction < 0.0)
+        return direction * (share if load >= 0.0 else -share)
+
     @property
     def load(self) -> float:
         """Present moment T of the constraint in N m."""
@@ -151,8 +147,7 @@ class MeshLaw(RotaryLaw):
     @property
     def slope(self) -> float:
         """Present friction in slip against T, without preload."""
-        load, direction = self.load, int(self.mode or 0)
-        return direction * self.share(abs(load), load * direction < 0.0) * (1.0 if load >= 0.0 else -1.0)
+        return self.slope_at(self.load, int(self.mode or 0))
 
     @property
     def _load(self) -> float:
@@ -180,11 +175,10 @@ class MeshLaw(RotaryLaw):
         ``change`` is added to the present moment T.
         """
         load = self._load + change
-        sign, values, slopes = 1.0 if load >= 0.0 else -1.0, list[float](), list[FloatArray]()
+        values, slopes = list[float](), list[FloatArray]()
         for limit, way in zip(self._limits_at(load), (1, -1), strict=True):
-            slope = sign * self.share(abs(load), load * way < 0.0)
             values.append(-way * force / limit)
-            slopes.append(np.array([-way / limit, way * force / limit**2 * slope]))
+            slopes.append(np.array([-way / limit, force / limit**2 * self.slope_at(load, way)]))
         return values, slopes
 
     def moment(self, t: float, spin: float) -> float:
@@ -238,12 +232,8 @@ class Meshes:
         preloads = np.array([law.preload for law in self.laws])
         loads, friction, before = free, free, np.full(len(free), np.inf)
         for _ in range(ITERATIONS):
-            slopes = np.array(
-                [
-                    direction * law.share(abs(load), load * direction < 0.0) * (1.0 if load >= 0.0 else -1.0)
-                    for law, load, direction in zip(self.laws, loads, directions, strict=True)
-                ]
-            )
+            each = zip(self.laws, loads.tolist(), directions.tolist(), strict=True)
+            slopes = np.array([law.slope_at(load, direction) for law, load, direction in each])
             if np.abs(slopes - before).max() <= SETTLED * np.abs(slopes).max():
                 return loads, friction
             before = slopes

@@ -264,7 +264,7 @@ class ModeChoice:
         accelerations: FloatArray,
         constraints: FloatArray,
     ) -> FloatArray:
-        """Return the slip accelerations of the contacts ``still``; those of others have no meaning."""
+        """Return the slip accelerations of the contacts ``still``; all others are arbitrary."""
         still = [*still, *(i for i in self._at_meshes if i not in still)]
         contacts = [self._contacts[i] for i in still]
         rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]

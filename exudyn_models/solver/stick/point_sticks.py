@@ -81,11 +81,11 @@ class PointSticks(AxialStick):
         """
         loads = factors.at_pins(places_in(factors.geometry[-1])[:, 2])
         points = tuple(
-            PlanarStick(pin, reference, load, ratio, point=1 + i)
+            PlanarStick(pin, load, reference=reference, static_ratio=ratio, point=1 + i)
             for i, (pin, load) in enumerate(zip(pins, loads, strict=True))
         )
-        whole = PointsOnAxis(kinds, reference, factors, ratio)
-        stick = cls(kinds, reference, factors, ratio, whole=whole, points=points)
+        whole = PointsOnAxis(kinds, factors, reference=reference, static_ratio=ratio)
+        stick = cls(kinds, factors, reference=reference, static_ratio=ratio, whole=whole, points=points)
         stick.check(factors.friction_coefficient, factors.normal_load)
         return stick
 

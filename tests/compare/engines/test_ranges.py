@@ -8,7 +8,7 @@ import pytest
 from compare.diagnosis import findings, run
 from compare.diagnosis.row import RIGHT
 from compare.engines import Engine, OutOfRangeError, Ranges, reference
-from reference_model import PinOnDisc
+from reference_model import FrictionJoint, PinOnDisc
 
 PIN = PinOnDisc(mass=2.0, stiffness=0.0, damping=0.0, friction_force=1e-9, disc_speed=0.0, offset=0.0)
 SMALL = {"coordinate": 20.0, "speed": 10.0, "time": 1e3, "mass": (0.01, 100.0)}
@@ -45,6 +45,14 @@ def test_a_motion_beyond_a_range_is_not_requested(start, times, mass, why):
     with pytest.raises(OutOfRangeError, match=f"limited declares {why}"):
         engine.simulate(replace(PIN, mass=mass), start, times)
     assert not asked
+
+
+def test_only_the_time_limits_a_joint():
+    engine = Engine("limited", reference.function, ("joint",), ranges=SMALL)
+    joint = FrictionJoint(inertia=1e3, friction_moment=1.0)
+    assert engine.simulate(joint, (50.0, 20.0), (0.0, 1.0)).at_end[0] > 60.0
+    with pytest.raises(OutOfRangeError, match="limited declares times up to 1000 s, not 2000 s"):
+        engine.simulate(joint, (0.0, 0.0), (0.0, 2e3))
 
 
 def test_the_matrix_stays_within_the_ranges_and_names_what_it_leaves_out():
