@@ -46,7 +46,7 @@ def strength(x: float, y: float, law: Law) -> float:
 @part
 def holds_for(x: float, y: float, angle: float, law: Law) -> float:
     """Return how long friction holds the body at rest at (x, y), 0 if not at all (eq. 6 and 7)."""
-    if law.hold < 0.0 or _spare(x, y, angle, 0.0, law) < 0.0:
+    if law.hold < 0.0 or _spare(x, y, angle, 0.0, law) < -NOISE * law.friction:
         return 0.0
     if law.omega == 0.0 or law.offset == 0.0:
         return math.inf

@@ -36,7 +36,7 @@ from reference_model.core.memory import (
 )
 from reference_model.core.recording import record_carried, record_falling
 from reference_model.core.rest import direction, holds_for
-from reference_model.core.slip import creep_from, ends_together, point_for, slide, time_left
+from reference_model.core.slip import creep_from, ends_together, is_frozen, point_for, slide, time_left
 from reference_model.core.steps.explicit import EXTENDED, SIZE, TERMS, Unknowns
 from reference_model.core.stiff import FIRST_STEP, at_rest, begin_slip, slip_stiffly
 from reference_model.core.surfaces import grip, sides
@@ -192,7 +192,8 @@ def slip_on(
     whole = seen_from(CENTRE, 0.0, law)
     if ends_together(y, law):
         y, law = seen(y, law, whole), whole
-    left = time_left(y, rates(y[0], y[1], y[2], y[3], y[4], y[5], law), law)
+    f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
+    left = time_left(y, f, law)
     if left >= 0.0:
         memory[STEPS] += 1.0
         return record_falling(y, left, end, memory, times, out, law), law
@@ -201,6 +202,8 @@ def slip_on(
         memory[STEPS] += 1.0
         memory[CREEPS] = 1.0
         return record_carried(seen(y, law, whole), end, creep, memory, times, out, whole), whole
-    if memory[SHORT] >= memory[PATIENCE]:
-        return slip_stiffly(y, memory, tolerance, end, times, out, law), law
+    if memory[SHORT] >= memory[PATIENCE] or is_frozen(f, law):
+        new = slip_stiffly(y, memory, tolerance, end, times, out, law)
+        if new[6] > y[6]:
+            return new, law
     return slide(y, memory, tolerance, end, work, times, out, law, K, F), law

@@ -38,6 +38,12 @@ REST_TIME = 1e-12
 REVERSAL = 1e-13
 """Slip below which slip that friction cannot hold counts as reversed; less for a point if the spin is slow too."""
 
+SOON = 0.1
+"""Longest time to the end of slip below REVERSAL that a parabola describes; the body moves by 1e-14 in it."""
+
+FROZEN = 1e-9
+"""Pace of stretched time below which explicit steps are so short that time hardly grows."""
+
 USUAL = 0.02
 """A step is short if relative change of slip plus time are below this."""
 
@@ -70,19 +76,22 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
     if fall <= 0.0:
         return -1.0
     left = s / fall
-    if law.point == CENTRE and left * left < REST_TIME:
+    reversal = REVERSAL if law.point == CENTRE else REVERSAL * min(1.0, abs(y[4]) / SLOW)
+    near = left * left < REST_TIME
+    ends = s < reversal and (near or (law.point == CENTRE and left < SOON))
+    if law.point == CENTRE and (near or ends):
         growing = (fall_after(y, s, left, law) - fall) / left
         left = 2.0 * s / (fall + math.sqrt(max(fall * fall + 2.0 * growing * s, 0.0)))
-    reversal = REVERSAL if law.point == CENTRE else REVERSAL * min(1.0, abs(y[4]) / SLOW)
-    if left * left < REST_TIME:
+    if near and not ends:
         across, pace = 0.0, abs(law.omega) + law.shaft + 1.0
         for v in range(2, 5 if law.point == CENTRE else 4):
             across += (f[v] / f[6] + fall * y[v] / s) ** 2
         if law.point != CENTRE:
             pace += abs(y[4]) / law.gyration
         together = len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST
-        if left * math.sqrt(across) / fall + left * left * pace < REST_TIME or together or s < reversal:
-            return left
+        ends = together or left * math.sqrt(across) / fall + left * left * pace < REST_TIME
+    if ends:
+        return left
     return 0.0 if s < reversal and fall < 10.0 * NOISE * law.friction else -1.0
 
 
@@ -117,11 +126,18 @@ def creep_from(y: Unknowns, tolerance: float, law: Law) -> Creep:
     return creep
 
 
+@inlined
+def is_frozen(f: Unknowns, law: Law) -> bool:
+    """Return whether explicit steps of a body with the rates ``f`` would hardly let the time grow."""
+    return law.point == CENTRE and f[6] < FROZEN
+
+
 @part
 def slip_ends(y: Unknowns, f: Unknowns, memory: FloatArray, tolerance: float, law: Law) -> bool:
     """Return whether explicit steps should not go on."""
     return (
-        memory[SHORT] >= memory[PATIENCE] or time_left(y, f, law) >= 0.0 or creep_from(y, tolerance, law)[0] > 0.0
+        memory[SHORT] >= memory[PATIENCE] or is_frozen(f, law) or time_left(y, f, law) >= 0.0
+        or creep_from(y, tolerance, law)[0] > 0.0
         or point_for(y, law) != law.point or ends_together(y, law)
     )  # fmt: skip
 

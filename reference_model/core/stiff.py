@@ -104,7 +104,7 @@ def slip_stiffly(
     law: Law,
 ) -> Unknowns:
     """Take steps by collocation while they pay."""
-    first_speed, explicit = speed_of(y, law), memory[SPAN]
+    first_speed, explicit = speed_of(y, law), max(memory[SPAN], LEAST_SPAN)
     h, known, coefficients = 4.0 * explicit, False, np.zeros((NODES + 1, 6))
     before = h
     memory[SHORT] = 0.0

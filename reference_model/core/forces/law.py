@@ -74,6 +74,12 @@ SCALARS = 16
 """Number of fields before ``around``."""
 
 
+HARDENING, STOP, FRICTION, HOLD, SHAFT = (
+    Law._fields.index(name) for name in ("hardening", "stop", "friction", "hold", "shaft")
+)
+"""Places of some parameters in an array of them."""
+
+
 def _unpacked() -> Any:
     namespace: dict[str, Any] = {"Law": Law}
     arguments = ", ".join(f"parameters[{i}]" for i in range(SCALARS))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from reference_model.core.forces.law import SCALARS, WIDTH, Law, unpacked
+from reference_model.core.forces.law import FRICTION, SCALARS, WIDTH, Law, unpacked
 from reference_model.core.forces.rates import friction
 from reference_model.core.memory import (
     ENDS,
@@ -30,6 +30,7 @@ from reference_model.core.memory import (
 from reference_model.core.single import FEW, compiled_advance
 from reference_model.core.steps.explicit import SIZE
 from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.laws import STRETCHING_TIME
 from reference_model.ensemble.core.recurrence import Window, see_radius
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.systems import FloatArray
@@ -53,11 +54,12 @@ SHARE = 0.5
 """Tolerance of a step of the core as a share of that of a lane, which is twice as large."""
 
 
-class Arrays(NamedTuple):
-    """The arrays of a run of the core, for one thread.
+class Room(NamedTuple):
+    """The compiled core with the arrays of a run, for one thread.
 
     ``state``, ``memory``, ``times``, ``out`` and ``phases`` are those of :func:`reference_model.core.run.follow`.
-    ``parameters`` and ``around`` are those of :func:`reference_model.core.forces.law.unpacked`.
+    ``parameters`` and ``around`` are those of :func:`reference_model.core.forces.law.unpacked`. The ``core`` arrives
+    apart, because compiled code takes no function in a tuple from Python.
     """
 
     state: FloatArray
@@ -67,24 +69,12 @@ class Arrays(NamedTuple):
     phases: FloatArray
     parameters: FloatArray
     around: FloatArray
+    core: Any = 0.0
 
 
-class Room(NamedTuple):
-    """The compiled core, with the arrays of a run."""
-
-    core: Callable[..., None]
-    state: FloatArray
-    memory: FloatArray
-    times: FloatArray
-    out: FloatArray
-    phases: FloatArray
-    parameters: FloatArray
-    around: FloatArray
-
-
-def arrays_for(points: int) -> Arrays:
-    """Return arrays for runs of a body on this number of contact points."""
-    return Arrays(
+def room_for(points: int) -> Room:
+    """Return room for runs of a body on this number of contact points, without the core."""
+    return Room(
         np.zeros(SIZE + 2), np.zeros(SLOTS), np.zeros(SAMPLES), np.zeros((SAMPLES, 6)), np.zeros((ROWS, 8)),
         np.zeros(SCALARS), np.zeros(WIDTH * points),
     )  # fmt: skip
@@ -92,17 +82,31 @@ def arrays_for(points: int) -> Arrays:
 
 def core_for_kernels() -> Any:
     """Return the compiled core for a kernel, which calls it by its address."""
-    state, memory, times, out, phases, parameters, around = arrays_for(0)
+    state, memory, times, out, phases, parameters, around, _ = room_for(0)
     return compiled_advance().compiled(
         state, memory, 1.0, 1.0, times, out, phases, 1.0, parameters, around
     )  # fmt: skip
 
 
 @inlined
-def room_with(core: Callable[..., None], arrays: Arrays) -> Room:
+def with_core(room: Room, core: Callable[..., None]) -> Room:
     return Room(
-        core, arrays.state, arrays.memory, arrays.times, arrays.out, arrays.phases, arrays.parameters, arrays.around,
+        room.state, room.memory, room.times, room.out, room.phases, room.parameters, room.around, core
     )  # fmt: skip
+
+
+@inlined
+def put_law(
+    place: FloatArray, damping: float, stiffness: float, offset: float, friction: float, hold: float, omega: float,
+    rim: float, shaft: float, lag: float, gyration: float,
+) -> None:  # fmt: skip
+    """Write the parameters of a pin, a ring or points on a linear support in the order of the core."""
+    numbers = (
+        damping, stiffness, offset, 0.0, 0.0, 0.0, friction, hold, omega, rim, rim, 0.0, shaft, lag, gyration,
+        STRETCHING_TIME * friction,
+    )  # fmt: skip
+    for i in range(len(numbers)):
+        place[i] = numbers[i]
 
 
 @scalar
@@ -154,7 +158,7 @@ def rests(room: Room) -> bool:
     """Return whether the body rests as a whole."""
     state = room.state
     moves = state[2] != 0.0 or state[3] != 0.0 or state[4] != 0.0
-    return not moves and room.parameters[6] > 0.0
+    return not moves and room.parameters[FRICTION] > 0.0
 
 
 @scalar

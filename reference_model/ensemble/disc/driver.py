@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from reference_model.contact.contact_law import Contact, contact_of
 from reference_model.contact.points import Points
-from reference_model.core.forces.law import SCALARS, WIDTH
+from reference_model.core.forces.law import SCALARS, SHAFT, WIDTH
 from reference_model.core.forces.points import around_of
 from reference_model.core.single import law_of
 from reference_model.core.units import Units
-from reference_model.ensemble.core.by_core import arrays_for, core_for_kernels
+from reference_model.ensemble.core.by_core import core_for_kernels, room_for
 from reference_model.ensemble.core.lanes import row_of
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.disc.kernel import run_by_core, run_points, run_rings
@@ -57,7 +57,7 @@ def simulate_any(
         speed = task.parameters[:, OF_PIN.index("disc_speed")]
         x, y, vx, vy, spin = np.broadcast_arrays(*starts.T, speed)
         starts = np.column_stack((x, y, np.zeros_like(x), vx, vy, spin))
-    table = np.array([_scaled(system, contact, task, i) for i in range(task.size)])
+    table = np.array([scaled_for_core(system, contact, task, i) for i in range(task.size)])
     results = _run(
         run_by_core, Task(table, starts, task.durations), (), points, no_regions(), tolerance, early_end, threads,
         by_core=True,
@@ -67,7 +67,7 @@ def simulate_any(
     return results
 
 
-def _scaled(system: System, contact: Contact | None, task: Task, number: int) -> list[float]:
+def scaled_for_core(system: System, contact: Contact | None, task: Task, number: int) -> list[float]:
     """Return the scaled parameters of the core, the units of length and rate, η, the speed of the disc, and κ."""
     names = (*(OF_PIN if isinstance(system, PinOnDisc) else OF_DISC), *OF_SUPPORT)
     parameters: dict[str, Any] = dict(zip(names, row_of(task.parameters, number).tolist(), strict=True))
@@ -76,7 +76,7 @@ def _scaled(system: System, contact: Contact | None, task: Task, number: int) ->
     row = list(law_of(one, contact_of(one, contact), unit)[:SCALARS])
     if isinstance(one, PinOnDisc):
         kappa = reach = unit.length
-        row[12] = SPIN_DOWN
+        row[SHAFT] = SPIN_DOWN
     else:
         kappa = math.sqrt(one.polar_inertia / one.mass)
         reach = one.contact_radius if contact is None else 1.0
@@ -91,8 +91,8 @@ def _run(
     local, core = tolerance_of_steps(tolerance), core_for_kernels()
 
     def run(stoppable: Task, first: int, last: int) -> None:
-        arrays = arrays_for(len(points) // WIDTH)
-        setup = Setup(DiscSettings(local, early_end, around, regions), points, arrays, by_core)
+        room = room_for(len(points) // WIDTH)
+        setup = Setup(DiscSettings(local, early_end, around, regions), points, room, by_core)
         kernel(stoppable, setup, core, results, first, last)
 
     in_chunks(run, task, threads)

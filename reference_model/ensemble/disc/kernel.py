@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from reference_model.core.forces.law import HARDENING, SCALARS, STOP, unpacked
 from reference_model.core.forces.rates import rates as rates_of
-from reference_model.ensemble.core.by_core import USUAL_SPAN, Room, law_in, power, room_with
+from reference_model.ensemble.core.by_core import USUAL_SPAN, Room, law_in, power, put_law, with_core
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import STIFF, row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, DiscLaw, units
@@ -71,28 +72,28 @@ def scaled(memory: DiscMemory, number: int, task: Task, setup: Setup) -> tuple[D
         length / kappa,
     )
     memory.length, memory.rate = length, rate
-    rim = law.leverage if len(setup.settings.around) == 0 else 0.0
-    hold = held_friction(law) if len(setup.settings.around) == 0 else friction
-    numbers = (
-        law.damping, law.stiffness, law.offset, 0.0, 0.0, 0.0, friction, hold, law.disc_speed, rim, rim, 0.0,
-        law.shaft_rate, law.lag, 1.0 / law.curling, STRETCHING_TIME * friction,
+    rim, hold = 0.0, friction
+    if len(setup.settings.around) == 0:
+        rim, hold = law.leverage, held_friction(law)
+    put_law(
+        memory.law, law.damping, law.stiffness, law.offset, friction, hold, law.disc_speed, rim, law.shaft_rate,
+        law.lag, 1.0 / law.curling,
     )  # fmt: skip
-    for i in range(len(numbers)):
-        memory.law[i] = numbers[i]
     return law, omega, kappa
 
 
 @scalar
 def scaled_before(memory: DiscMemory, number: int, task: Task, setup: Setup) -> tuple[DiscLaw, float, float]:
-    """Read scaled parameters, see ``driver.scaled_parameters``."""
+    """Read the numbers of ``driver.scaled_for_core``."""
     row = row_of(task.parameters, number)
-    for i in range(len(memory.law)):
+    for i in range(SCALARS):
         memory.law[i] = row[i]
     memory.length, memory.rate, leverage, omega, kappa = row[-5], row[-4], row[-3], row[-2], row[-1]
-    friction = row[6]
+    core = unpacked(row, setup.room.around)
     law = DiscLaw(
-        setup.settings.around, row[1], row[0], friction, row[8], row[2], row[15] if friction > 0.0 else 1.0,
-        0.0 if friction > 0.0 else 1.0, leverage, row[12], row[13], 1.0 / row[14],
+        setup.settings.around, core.stiffness, core.damping, core.friction, core.omega, core.offset,
+        core.stretch if core.friction > 0.0 else 1.0, 0.0 if core.friction > 0.0 else 1.0, leverage, core.shaft,
+        core.lag, 1.0 / core.gyration,
     )  # fmt: skip
     return law, omega, kappa
 
@@ -114,10 +115,11 @@ def load_with(
     x, y, angle, vx, vy, spin = row_of(task.starts, number)
     duration = float(row_of(task.durations, number)) * rate
     memory.number, memory.span = number, USUAL_SPAN
-    stiffer = 1.0 if memory.law[3] > 0.0 or memory.law[5] > 0.0 else 0.0
-    memory.tick = (
-        2.0 * math.pi / math.sqrt(law.stiffness or stiffer) if law.stiffness + stiffer > 0.0 else math.inf
-    )
+    memory.tick = math.inf
+    if law.stiffness > 0.0:
+        memory.tick = 2.0 * math.pi / math.sqrt(law.stiffness)
+    elif memory.law[HARDENING] > 0.0 or memory.law[STOP] > 0.0:
+        memory.tick = 2.0 * math.pi
     put(lanes.law, lane, law)
     lanes.tolerance[lane], lanes.duration[lane], lanes.due[lane] = (
         setup.settings.tolerance,
@@ -212,24 +214,18 @@ _load_any, _handle_any = _scalar_functions(scaled_before, scalar(_general_rates)
 
 
 @inlined
-def with_core(setup: Setup, core: Callable[..., None]) -> Setup:
-    """Return the setup with the core beside its arrays; compiled code cannot take a function in a tuple."""
-    return Setup(setup.settings, setup.points, room_with(core, setup.room), setup.by_core)
+def _with_core(setup: Setup, core: Callable[..., None]) -> Setup:
+    return Setup(setup.settings, setup.points, with_core(setup.room, core), setup.by_core)
 
 
 @called_from_python
 def run_rings(
     task: Task, setup: Setup, core: Callable[..., None], results: Results, first: int, last: int
 ) -> None:
-    _run_rings(task, with_core(setup, core), results, first, last)
-
-
-@scalar
-def _run_rings(task: Task, setup: Setup, results: Results, first: int, last: int) -> None:
     run(
         _load_ring, _advance_rings, _advance_ring_alone, _handle_ring, store,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
-        setup.settings.around, task, setup, results,
+        setup.settings.around, task, _with_core(setup, core), results,
     )  # fmt: skip
 
 
@@ -237,18 +233,16 @@ def _run_rings(task: Task, setup: Setup, results: Results, first: int, last: int
 def run_points(
     task: Task, setup: Setup, core: Callable[..., None], results: Results, first: int, last: int
 ) -> None:
-    _run_points(task, setup, core, results, first, last)
+    _run_points(task, _with_core(setup, core), results, first, last)
 
 
 @inlined
-def _run_points(
-    task: Task, setup: Setup, core: Callable[..., None], results: Results, first: int, last: int
-) -> None:
+def _run_points(task: Task, setup: Setup, results: Results, first: int, last: int) -> None:
     """Separate for the same reason as ``pin.kernel._run_pins``."""
     run(
         _load_points, _advance_points, _advance_points_alone, _handle_points, store,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
-        setup.settings.around, task, with_core(setup, core), results,
+        setup.settings.around, task, setup, results,
     )  # fmt: skip
 
 
@@ -259,5 +253,5 @@ def run_by_core(
     run(
         _load_any, _ask_the_core, _ask_the_core, _handle_any, store,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
-        setup.settings.around, task, with_core(setup, core), results,
+        setup.settings.around, task, _with_core(setup, core), results,
     )  # fmt: skip

@@ -272,7 +272,7 @@ class Setup(NamedTuple):
 
     settings: DiscSettings
     points: FloatArray
-    room: Any  # Arrays from Python, a Room inside
+    room: Room
     by_core: bool
 
 

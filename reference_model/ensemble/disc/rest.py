@@ -5,6 +5,7 @@ A disc rests permanently if it sticks for a whole turn of the master disc, becau
 
 import math
 
+from reference_model.core.forces.law import HARDENING, HOLD, STOP
 from reference_model.core.memory import CREEPS, PATIENCE, PHASE, SHORT, STEP, STICKS
 from reference_model.core.steps.explicit import SIZE
 from reference_model.ensemble.core.by_core import (
@@ -51,9 +52,6 @@ TURNS = 1.1
 """A stick phase is permanent if it lasts for this number of turns of the master disc."""
 
 GOES_ON, ENDS, FAILS = 0, 1, 2
-
-HARDENING, STOP, HOLD = 3, 5, 7
-"""Indices into the parameters of :class:`reference_model.core.forces.law.Law`."""
 
 
 @written_out

@@ -12,6 +12,7 @@ from reference_model.ensemble.core.by_core import (
     is_done,
     next_span,
     prepare,
+    put_law,
     slip_of,
     way_of,
 )
@@ -335,12 +336,9 @@ def step_by_core(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, set
     if lanes.due[lane] > t:
         until = min(until, lanes.due[lane])
     g = law.friction
-    numbers = (
-        law.damping, law.stiffness, law.offset, 0.0, 0.0, 0.0, g, g, law.disc_speed, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-        law.stretching,
+    put_law(
+        room.parameters, law.damping, law.stiffness, law.offset, g, g, law.disc_speed, 0.0, 0.0, 0.0, 1.0,
     )  # fmt: skip
-    for i in range(len(numbers)):
-        room.parameters[i] = numbers[i]
     start = (z.real, z.imag, w.real, w.imag, 0.0, 0.0, t)
     prepare(room, start, now.step[lane], pace, math.inf, memory.patience, until - t)
     sound, done, slow = True, False, False

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from reference_model.ensemble.core.by_core import USUAL_SPAN, core_for_kernels, room_with
+from reference_model.ensemble.core.by_core import USUAL_SPAN, core_for_kernels, with_core
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run, store_end
 from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, PinLaw, pull, units
@@ -127,9 +127,13 @@ def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> No
 def run_pins(
     task: Task, settings: Settings, core: Callable[..., None], results: Results, first: int, last: int
 ) -> None:
-    room = room_with(core, settings.room)
     inside = Settings(
-        settings.tolerance, settings.early, settings.once, settings.regions, settings.series, room
+        settings.tolerance,
+        settings.early,
+        settings.once,
+        settings.regions,
+        settings.series,
+        with_core(settings.room, core),
     )
     _run_pins(task, inside, results, first, last)
 

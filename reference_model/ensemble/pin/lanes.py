@@ -5,7 +5,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.core.by_core import arrays_for
+from reference_model.ensemble.core.by_core import Room, room_for
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.lanes import (
     EXTREME,
@@ -263,7 +263,7 @@ class Settings(NamedTuple):
     once: bool
     regions: TrappingRegions
     series: ComplexArray
-    room: Any  # Arrays from Python, a Room inside
+    room: Room
 
 
 def no_regions() -> NDArray[Any]:
@@ -279,7 +279,7 @@ def settings_of(
     # The kernel is compiled for writable arrays only.
     known = no_regions() if regions is None else regions.copy()
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
-    return Settings(tolerance, early, once, known[0], series, arrays_for(0))
+    return Settings(tolerance, early, once, known[0], series, room_for(0))
 
 
 @inlined

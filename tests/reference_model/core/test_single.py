@@ -3,6 +3,7 @@
 import _thread
 import cmath
 import functools
+import math
 import signal
 import subprocess
 import sys
@@ -52,6 +53,27 @@ def test_body_whose_pull_exceeds_friction_by_a_hair_and_falls_slips_briefly(exce
     error = 2.0 * excess + 2e-5 + 3e-16 / excess
     assert found.phases[0].end == pytest.approx(2.0 * excess * pull / -rate, rel=error)
     assert found.solution.steps < 200
+
+
+@pytest.mark.parametrize("points", ["pin", None, 6])
+@pytest.mark.parametrize("excess", [1e-16, 1e-13, 1e-12, 1e-11, 1e-9, 1e-6])
+def test_body_whose_constant_pull_exceeds_friction_by_a_hair_slips_for_half_a_swing(excess, points):
+    """Slip e·X0·k·sin(kt) ends at π/k; an excess within the rounding error of the pull does not count."""
+    parameters = {
+        "mass": 1.0, "stiffness": 1.0, "damping": 0.0, "friction_force": 1.0 / (1.0 + excess), "disc_speed": 0.0,
+        "offset": 1.0,
+    }  # fmt: skip
+    system, start = PinOnDisc(**parameters), [0.0] * 4
+    if points != "pin":
+        system, start = DiscOnDisc(**parameters, **SHAFT, contact_points=points), [0.0] * 6
+    found = simulate(system, start, [0.0, 4.0], compiled=True)
+    if excess < 4e-16:
+        assert [phase.kind for phase in found.phases] == ["stick"]
+        return
+    assert [phase.kind for phase in found.phases] == ["slip", "stick"]
+    # A parabola describes the last 0.1 of a sine, with an error of 0.1³/3. The way is known to rounding of the pull.
+    assert found.phases[0].end == pytest.approx(math.pi, abs=4e-4)
+    assert found.at_end[0] == pytest.approx(2.0 * excess, rel=1e-3 + 1e-15 / excess)
 
 
 @pytest.mark.parametrize("duration", [267.0, 500.0])

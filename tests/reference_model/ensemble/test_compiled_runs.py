@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plain_engines import as_disc, stuck_state
-from random_systems import SYSTEMS, TIMES, RandomMotion
+from random_systems import SYSTEMS, TIMES, RandomMotion, random_points
 
-from compare.claims.parameters import FIG5, FIG5_STARTS, FIG9, FIG11
-from reference_model import DiscOnDisc, PinOnDisc, simulate
-from reference_model.ensemble import simulate_ensemble
+from compare.claims.parameters import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
+from reference_model import Annulus, DiscOnDisc, PinOnDisc, PointsOnRing, simulate
+from reference_model.ensemble import EndState, simulate_ensemble
 
 SECOND = list(FIG5_STARTS.values())[1]
 """A start with nine stick phases."""
@@ -143,6 +143,45 @@ def test_random_systems_move_in_an_ensemble_as_alone(seed):
     alone = simulate(random.system, random.start, [0.0, TIMES[-1]], tolerance=1e-11, compiled=True)
     assert found.time[0] == TIMES[-1]
     assert np.abs(found.states[0] - alone.at_end).max() < 1e-9 * MOST_TOLERANCES
+
+
+@pytest.mark.parametrize("seed", [1, 4, 7, 10, 13, 16])
+@pytest.mark.parametrize("kind", ["annulus", "unequal points", "thirty points"])
+def test_discs_with_any_contact_move_in_an_ensemble_as_alone(kind, seed):
+    random = RandomMotion.of(seed)
+    contact = {
+        "annulus": Annulus(0.07, 0.15), "unequal points": random_points(seed), "thirty points": PointsOnRing(0.1, 30),
+    }[kind]  # fmt: skip
+    found = simulate_ensemble(
+        random.system, random.start, duration=TIMES[-1], contact=contact, early_end=False
+    )
+    alone = simulate(
+        random.system, random.start, [0.0, TIMES[-1]], tolerance=1e-11, contact=contact, compiled=True
+    )
+    assert found.time[0] == TIMES[-1]
+    assert np.abs(found.states[0] - alone.at_end).max() < 1e-9 * MOST_TOLERANCES
+
+
+@pytest.mark.parametrize(
+    ("system", "duration"),
+    [
+        (FIG5, 400.0), (replace(FIG5, damping=1.173, friction_force=0.658, disc_speed=1.8, offset=-0.42), 400.0),
+        (replace(FIG5, friction_force=0.3, disc_speed=0.6), 400.0), (FIG8, 2000.0), (FIG11, 3000.0),
+    ],
+    ids=["Fig. 5", "stick and slip", "sticks", "Fig. 8", "Fig. 11"],
+)  # fmt: skip
+def test_the_core_finds_the_ends_that_lanes_find(system, duration):
+    """A negligible hardening leaves all steps to the core."""
+    starts = np.random.default_rng(5).uniform(-0.4, 0.4, (12, system.state_size))
+    lanes = simulate_ensemble(system, starts, duration=duration)
+    core = simulate_ensemble(replace(system, hardening=1e-12), starts, duration=duration)
+    decided = (lanes.end != EndState.UNDECIDED) & (core.end != EndState.UNDECIDED)
+    assert decided.mean() > 0.7
+    np.testing.assert_array_equal(core.end[decided], lanes.end[decided])
+    for name in ("least_radius", "largest_radius", "slip_power"):
+        np.testing.assert_allclose(
+            getattr(core, name)[decided], getattr(lanes, name)[decided], rtol=1e-3, atol=1e-6
+        )
 
 
 @pytest.mark.parametrize("body", ["pin", "ring", "three points"])
