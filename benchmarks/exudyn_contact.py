@@ -35,8 +35,8 @@ from exudyn_models import (
 )
 from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, functions_on_axis
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
-from exudyn_models.forces.laws.calls import number_at
 from exudyn_models.forces.laws.places import ring_places, table_of
+from exudyn_models.forces.laws.tables import number_at
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
 
