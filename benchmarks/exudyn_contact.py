@@ -212,9 +212,6 @@ PLANAR: dict[str, AddContact] = {
     "ring, Stribeck and a load of time": lambda *nodes: ours(
         RING | {"friction_coefficient": stribeck}, load_of_time
     )(*nodes),
-    "the same, compiled by numba": lambda *nodes: ours(
-        RING | {"friction_coefficient": numba.njit(stribeck)}, numba.njit(constant_load)
-    )(*nodes),
     "ring, table over slip": ours(RING | {"friction_coefficient": TABLE}),
     "ring with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
     "annulus": ours(ANNULUS),
@@ -259,11 +256,6 @@ def fading(temperature: float) -> float:
 def load_of_time(time: float) -> float:
     """Return a load in N."""
     return FIG5.friction_force
-
-
-def constant_load(time: float) -> float:
-    """Return a load in N in a form that numba can compile."""
-    return 0.05
 
 
 AXIAL: dict[str, AddContact] = {
