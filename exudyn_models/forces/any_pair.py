@@ -55,7 +55,7 @@ def motion_of(at: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, FloatArray]
 
 @compiled
 def slip_on_any(parameters: Parameters, q: Any, q_t: Any) -> tuple[float, float, float]:
-    """Return radius (m), slip speed (m/s) and relative spin (rad/s), on which load and coefficient may depend."""
+    """Return radius (m), slip speed (m/s) and relative spin (rad/s) for load and coefficient."""
     contact, kinds = contact_of(parameters)
     coordinates, velocities = motion_of(parameters, q, q_t)
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
