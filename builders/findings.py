@@ -25,13 +25,16 @@ from typing import Any, Literal
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
 from compare.report.matrix import WORST_FIRST, State
-from compare.report.numbers import error_text, unbroken, value_text
+from compare.report.numbers import error_text, value_text
 from compare.report.quotes import Nature, parts, quote
 from compare.report.results_json import read_results
 
 ROOT = Path(__file__).parents[1]
 
 QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
+
+WITH_UNIT = re.compile(QUOTED.pattern + r"( (?:N m s/rad|mm|rpm|N|m|s|%)(?!\w))?")
+"""A number with its unit, which the link to its claim includes: a search for "3145 rpm" finds it."""
 
 CLAIMS = "#claims"
 """Place of the quoted claims in ``builders/findings.md``."""
@@ -107,12 +110,13 @@ def kept(root: Path = ROOT) -> dict[str, Number]:
 def findings(numbers: Mapping[str, Number], root: Path = ROOT) -> str:
     """Return the text of docs/findings.md."""
     template = (root / "builders" / "findings.md").read_text(encoding="utf-8")
-    linked = QUOTED.sub(lambda found: _linked(numbers[found[1]]), template)
-    return unbroken(linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template)))))
+    linked = WITH_UNIT.sub(lambda found: _linked(numbers[found[1]], found[2] or ""), template)
+    return linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template))))
 
 
-def _linked(number: Number) -> str:
-    return f"[{number.text}](#{anchor(number.claim)})" if number.nature == "measured" else number.text
+def _linked(number: Number, unit: str) -> str:
+    text = f"{number.text}{unit}"
+    return f"[{text}](#{anchor(number.claim)})" if number.nature == "measured" else text
 
 
 def anchor(claim: str) -> str:
