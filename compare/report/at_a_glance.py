@@ -36,9 +36,10 @@ class Glance:
 
 
 def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
-    """Return the engines of this run, then the recorded ones at their best settings."""
+    """Return the engines that this run measured, then the recorded ones at their best settings."""
     recorded = matrix.recorded[0] if matrix.recorded else None
-    found = [_measured(run, matrix, engine, recorded) for engine in run.engines]
+    known = {*matrix.columns, *(recorded.by_engine if recorded is not None else ())}
+    found = [_measured(run, matrix, engine, recorded) for engine in run.engines if engine in known]
     if recorded is not None:
         others = {
             engine: best_of(settings)

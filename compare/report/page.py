@@ -53,6 +53,10 @@ def page(
             paths=paths,
             glances=glances,
             contrast=contrast(glances),
+            seen={one.grade for one in glances},
+            grades=[
+                grade for grade in GRADES if any(matrix.grades(column)[grade] for column in matrix.columns)
+            ],
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else {},
             explained=lambda cell: "; ".join(filter(None, (cell.reason, cell.cost))),
             deviation=lambda cell: error_text(max(float(claim.difference.max()) for claim in cell.claims), 1),
