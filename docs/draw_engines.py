@@ -19,6 +19,7 @@ from compare.diagnosis.run import row_of
 from compare.foreign import CASES, recordings
 from compare.output.figures import paper_style
 from compare.report.at_a_glance import best_of
+from compare.report.matrix import state_of
 from compare.report.numbers import error_text
 from compare.studies.engines.foreign_engines.theory import recorded_claims
 
@@ -85,47 +86,44 @@ def draw() -> Figure:
 
 def _said(recorded: Recorded) -> str:
     """Return the mark of a setting, with the number of motions that do not agree."""
-    verdicts = [claim.verdict for claim in recorded.claims]
-    bad = {"✗": verdicts.count(Verdict.DIFFERS), "?": verdicts.count(Verdict.INCONCLUSIVE)}
-    return (
-        f"{', '.join(f'{mark} {n}' for mark, n in bad.items() if n)} of {len(verdicts)}"
-        if any(bad.values())
-        else "✓"
-    )
+    marks = [state_of(claim).symbol for claim in recorded.claims]
+    bad = [f"{mark} {marks.count(mark)}" for mark in "✗?" if mark in marks]
+    return f"{', '.join(bad)} of {len(marks)}" if bad else "✓"
 
 
 def _why(recorded: Recorded) -> list[str]:
-    of_verdict = {claim.sentence: claim.verdict is Verdict.DIFFERS for claim in recorded.claims}
-    wrong = any(of_verdict.values())
-    return list(dict.fromkeys(why for one, why in recorded.reasons.items() if of_verdict[one] is wrong))
+    """Return the reasons of ✗, or those of ? if there is no ✗."""
+    by_mark: dict[str, list[str]] = {"✗": [], "?": []}
+    for claim in recorded.claims:
+        by_mark.get(state_of(claim).symbol, []).append(recorded.reasons.get(claim.sentence, ""))
+    return list(dict.fromkeys(by_mark["✗"] or by_mark["?"]))
 
 
 def table() -> str:
     """Return the table of README, one row for each engine."""
-    found: dict[str, list[tuple[Row, Recorded]]] = {}
+    found: dict[str, dict[Recorded, Row]] = {}
     for row, recorded in ENGINES:
-        found.setdefault(recorded.engine, []).append((row, recorded))
-    lines = [
-        "| engine | as shipped | best setting | friction law | largest error there | why not ✓ |",
-        "|---|---|---|---|---|---|",
-    ]
-    for engine, settings in found.items():
-        rows = {recorded: row for row, recorded in settings}
+        found.setdefault(recorded.engine, {})[recorded] = row
+    lines = []
+    for engine, rows in found.items():
         best, shipped = best_of(list(rows)), next(one for one in rows if one.shipped)
-        laws = dict.fromkeys((law_of(rows[shipped]), law_of(rows[best])))
-        worst = max(
-            (one for one in best.claims if one.verdict is Verdict.AGREES), key=lambda one: one.measured.max()
+        laws = " → ".join(dict.fromkeys((law_of(rows[shipped]), law_of(rows[best]))))
+        agreeing = [one for one in best.claims if one.verdict is Verdict.AGREES]
+        worst = max(agreeing, key=lambda one: float(one.measured))
+        cost = best.costs[worst.sentence].replace("natural ", "")
+        error = f"{error_text(float(worst.measured), 1)} m: {cost}"
+        why = "; ".join(
+            [f"as shipped: {one}" for one in _why(shipped)[:1] if one not in _why(best)] + _why(best)
         )
-        error = (
-            f"{error_text(worst.measured.max(), 1)} m: {best.costs[worst.sentence].replace('natural ', '')}"
-        )
-        why = [f"as shipped: {one}" for one in _why(shipped)[:1] if one not in _why(best)] + _why(best)
-        name = f"{_said(best)} {best.setting}".strip()
-        lines.append(
-            f"| {engine} | {_said(shipped)} | {name} | {' → '.join(laws)} | {error} | {'; '.join(why)} |"
-        )
-    ours, others = lines[2:5], sorted(lines[5:], key=lambda line: "✓?✗".index(line.split("|")[3].strip()[0]))
-    return "\n".join([*lines[:2], *ours, *others])
+        setting = f"{_said(best)} {best.setting}".strip()
+        lines.append(f"| {engine} | {_said(shipped)} | {setting} | {laws} | {error} | {why} |")
+    head = (
+        "| engine | as shipped | best setting | friction law | largest error there | why not ✓ |\n"
+        + 6 * "|---"
+        + "|"
+    )
+    others = sorted(lines[3:], key=lambda line: "✓?✗".index(line.split("| ")[3][0]))
+    return "\n".join([head, *lines[:3], *others])
 
 
 if __name__ == "__main__":

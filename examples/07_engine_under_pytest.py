@@ -65,8 +65,7 @@ def draw(path):
 
 
 if __name__ == "__main__":
-    for engine in (euler, runge_kutta):
-        name = "Euler" if engine is euler else "Runge–Kutta"
+    for name, engine in (("Euler", euler), ("Runge–Kutta", runge_kutta)):
         print(f"{name}: error {errors(engine, [0.01])[0]:.0e} m or m/s with steps of 0.01 s")
     if len(sys.argv) > 1:
         draw(sys.argv[1])

@@ -70,8 +70,3 @@ class Recorded:
     adapter: str = ""
     advice: str = ""
     whirl: float = math.nan
-
-    @property
-    def name(self) -> str:
-        """Engine and setting, separated by a comma."""
-        return f"{self.engine}, {self.setting}" if self.setting else self.engine

@@ -8,7 +8,6 @@ from urllib.parse import quote
 from compare.claims.claim import GRADES, Claim, Verdict
 from compare.claims.validation import Recorded
 from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, State
-from compare.report.numbers import error_text
 from compare.run.runner import Run
 
 OTHER_LAW = 10.0
@@ -62,26 +61,6 @@ def cases(recorded: RecordedMatrix) -> dict[str, str]:
 
 def _case(setting: Recorded, claim: Claim) -> str:
     return setting.cases.get(claim.sentence, (claim.sentence, ""))[0]
-
-
-def contrast(found: Sequence[Glance]) -> str:
-    """Return an example of a small error that differs and a larger one that agrees, or ""."""
-    errors = {
-        state: [
-            (float(cell.claims[0].difference.max()), one.engine)
-            for one in found
-            for cell in one.cells
-            if cell is not None and cell.state is state
-        ]
-        for state in (State.DIFFERS, State.AGREES)
-    }
-    if not (errors[State.DIFFERS] and errors[State.AGREES]):
-        return ""
-    small, large = min(errors[State.DIFFERS]), max(errors[State.AGREES])
-    if small >= large:
-        return ""
-    texts = [f"{error_text(size, 1)} m of {engine}" for size, engine in (small, large)]
-    return f"For example, the {texts[0]} do not fall with the step, but the {texts[1]} do."
 
 
 def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | None) -> Glance:

@@ -198,7 +198,7 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
         size=1.0,
         system=motion.system,
         source=motion.source,
-        data=lambda: _drawn(*balances.values()) if motion.drawn else {},
+        data=lambda: _drawn(next(iter(balances.values()))) if motion.drawn else {},
         named={name.replace(",", ""): None},
     )
 
@@ -228,9 +228,7 @@ def _relative_residual(balance: PowerBalance) -> float:
     return float(np.max(np.abs(balance.residual)) / balance.turned_over)
 
 
-def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
-    last = others[-1]  # its phases may begin and end at other times
-    change = balance.residual - np.interp(balance.times, last.times, last.residual)
+def _drawn(balance: PowerBalance) -> Data:
     return {
         "times": balance.times,
         "drive work": balance.drive_work,
@@ -238,7 +236,6 @@ def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
         "damper heat": balance.damper_heat,
         "stored energy": balance.stored_energy,
         "residual": balance.residual / balance.turned_over,
-        "change of residual": change / balance.turned_over,
     }
 
 

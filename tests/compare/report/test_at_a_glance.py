@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, recorded
 
-from compare.report.at_a_glance import cases, contrast, glances
+from compare.report.at_a_glance import cases, glances
 from compare.report.matrix import matrix
 from compare.run.runner import Run, run
 
@@ -99,15 +99,6 @@ def test_a_sentence_lists_missing_motions_and_differences(found):
         "In the other motions, use small steps."
     )
     assert found["Pins"].cells[2] is None
-
-
-def test_a_small_error_that_differs_is_contrasted_with_a_larger_one_that_agrees(found):
-    small = replace(found["Wrong"], cells=(found["Kite"].cells[0],))
-    assert contrast(tuple(found.values())) == ""  # all that differ are larger
-    wrong = replace(found["Wrong"].cells[0], claims=found["Kite"].cells[0].claims)
-    assert contrast((replace(small, cells=(wrong,)), found["Wrong"], found["Pins"])) == (
-        "For example, the 1×10⁻⁶ m of Wrong do not fall with the step, but the 0.001 m of Pins do."
-    )
 
 
 def test_an_engine_of_the_run_is_described_by_its_claims(found):

@@ -101,8 +101,8 @@ def draw_maps(theory: Data) -> Figure:
     ):
         panel.annotate(words, where, xycoords="axes fraction", color=colour)
     speed, torque, surplus = frozen.MODULATED
-    for panel, across in ((left, speed), (right, surplus)):
-        panel.plot(across, torque, "*", color=BLACK, markersize=10.0)
+    left.plot(speed, torque, "*", color=BLACK, markersize=10.0)
+    right.plot(surplus, torque, "*", color=BLACK, markersize=10.0)
     bar = figure.colorbar(
         mesh, ax=[left, right], label="growth rate of the modulation in 1/s (blue: it decays)"
     )

@@ -247,7 +247,7 @@ def _by_engine(ladders: Data, settings: Sequence[Recorded], case: str) -> Figure
     """Draw the best setting and the one as shipped in colour, other settings and the reference in grey."""
     by_engine: dict[str, list[Recorded]] = {}
     for one in settings:
-        if one.setting and f"{one.name}: {case}" in ladders:
+        if one.setting and f"{one.engine}, {one.setting}: {case}" in ladders:
             by_engine.setdefault(one.engine, []).append(one)
     rows = -(-len(by_engine) // 4)
     figure, panels = new_figure(4, rows, width=11.0, height=2.5 * rows, sharex=True, sharey=True)
@@ -256,9 +256,10 @@ def _by_engine(ladders: Data, settings: Sequence[Recorded], case: str) -> Figure
         panel.loglog(*ladders[f"reference: {case}"].T, color=GREY, linestyle=":", linewidth=1.0)
         for one in sorted(found, key=lambda one: (one is best, one.shipped)):
             colour = BLUE if one is best else ORANGE if one.shipped else GREY
-            runs = ladders[f"{one.name}: {case}"]
+            name = f"{one.engine}, {one.setting}"
+            runs = ladders[f"{name}: {case}"]
             panel.loglog(
-                *runs.T, color=colour, marker="." if colour != GREY else "", linewidth=1.0, label=one.name
+                *runs.T, color=colour, marker="." if colour != GREY else "", linewidth=1.0, label=name
             )
             if colour != GREY:
                 said = (
