@@ -1,5 +1,6 @@
 """Figures."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -31,12 +32,13 @@ def draw_radius(data: ByEngine) -> Figure:
     if "theory" in data:
         _whirls(panel, data["theory"])
         _near_axis(panel, data["theory"])
-    for engine in engines_in(data):
-        found = data[engine]
-        loads = found["circle load"]
+    for engine, found, kind in _measured(data):
+        loads = found[f"{kind}circle load"]
         pin = np.array([radius_of_pin(load) for load in loads])
-        panel.plot(loads, found["circle"][:, 0] * pin, **points(engine))
-        panel.plot(found["rest load"], RING.offset * np.hypot(*found["rest"].T[:2]), **points(engine, ""))
+        panel.plot(loads, found[f"{kind}circle"][:, 0] * pin, **points(engine))
+        panel.plot(
+            found["rest load"], RING.offset * np.hypot(*found[f"{kind}rest"].T[:2]), **points(engine, "")
+        )
         if "orbit" in found:
             panel.plot(found["orbit load"], found["orbit"][:, 1:3], **points(engine, ""))
             panel.plot(found["stick load"], found["stuck"][:, 0], **points(engine, ""))
@@ -44,6 +46,13 @@ def draw_radius(data: ByEngine) -> Figure:
     panel.set(xscale="log", yscale="log", xlim=(LEAST_LOAD, 1.3 * LARGEST_LOAD), ylim=(4e-3, 120.0))
     panel.legend(loc="upper left")
     return figure
+
+
+def _measured(data: ByEngine) -> Iterator[tuple[str, Data, str]]:
+    """Yield each engine with its data and their prefix: "" on a ring, else "six " on six points."""
+    for engine in engines_in(data):
+        for kind in [kind for kind in ("", "six ") if f"{kind}circle" in data[engine]][:1]:
+            yield engine, data[engine], kind
 
 
 def _whirls(panel: Axes, found: Data) -> None:
@@ -88,12 +97,11 @@ def draw_spin(data: ByEngine) -> Figure:
     limit = spin_of_large_whirl(RING)
     if "theory" in data:
         _spin_by_theory(whole, distance, data["theory"], limit)
-    for engine in engines_in(data):
-        found = data[engine]
-        spin, loads = RING.disc_speed * found["circle"][:, 2], found["circle load"]
+    for engine, found, kind in _measured(data):
+        spin, loads = RING.disc_speed * found[f"{kind}circle"][:, 2], found[f"{kind}circle load"]
         whole.plot(loads, spin, **points(engine))
         distance.plot(loads, spin - limit, **points(engine))
-        whole.plot(found["rest load"], RING.disc_speed * found["rest"][:, 2], **points(engine, ""))
+        whole.plot(found["rest load"], RING.disc_speed * found[f"{kind}rest"][:, 2], **points(engine, ""))
         if "orbit" in found:
             distance.plot(found["orbit load"], found["orbit"][:, -1] - limit, **points(engine, ""))
             whole.plot(found["stick load"], found["stuck"][:, 1], **points(engine, ""))
