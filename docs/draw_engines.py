@@ -72,8 +72,7 @@ def draw() -> Figure:
             panel.text(column + 0.06, line + 0.33, mark, va="center", fontfamily="DejaVu Sans", fontsize=9)
             panel.text(column + 0.2 * bool(mark) + 0.06, line + 0.36, error, va="center", fontsize=10)
             panel.text(column + 0.96, line + 0.36, order, va="center", ha="right", fontsize=8, color="0.25")
-            short = cost.replace(" steps per natural period", "/period").replace("a tolerance of", "tol.")
-            panel.text(column + 0.06, line + 0.77, short, va="center", fontsize=8, color="0.25")
+            panel.text(column + 0.06, line + 0.77, _short(cost), va="center", fontsize=8, color="0.25")
         panel.text(-0.06, line + 0.5, engine, va="center", ha="right", fontsize=10)
     for column, case in enumerate(CASES.values()):
         panel.text(column + 0.5, -0.75, case.name, va="bottom", ha="center", fontsize=10.5)
@@ -84,6 +83,10 @@ def draw() -> Figure:
     return figure
 
 
+def _short(cost: str) -> str:
+    return cost.replace(" steps per natural period", "/T").replace("a tolerance of", "tol.")
+
+
 def _said(recorded: Recorded) -> str:
     """Return the mark of a setting, with the number of motions that do not agree."""
     marks = [state_of(claim).symbol for claim in recorded.claims]
@@ -92,10 +95,11 @@ def _said(recorded: Recorded) -> str:
 
 
 def _why(recorded: Recorded) -> list[str]:
-    """Return the reasons of ✗, or those of ? if there is no ✗."""
+    """Return the main clauses of the reasons of ✗, or of ? if there is no ✗."""
     by_mark: dict[str, list[str]] = {"✗": [], "?": []}
     for claim in recorded.claims:
-        by_mark.get(state_of(claim).symbol, []).append(recorded.reasons.get(claim.sentence, ""))
+        why = re.split(r" with | under |, ", recorded.reasons.get(claim.sentence, ""))[0]
+        by_mark.get(state_of(claim).symbol, []).append(why)
     return list(dict.fromkeys(by_mark["✗"] or by_mark["?"]))
 
 
@@ -110,8 +114,7 @@ def table() -> str:
         laws = " → ".join(dict.fromkeys((law_of(rows[shipped]), law_of(rows[best]))))
         agreeing = [one for one in best.claims if one.verdict is Verdict.AGREES]
         worst = max(agreeing, key=lambda one: float(one.measured))
-        cost = best.costs[worst.sentence].replace("natural ", "")
-        error = f"{error_text(float(worst.measured), 1)} m: {cost}"
+        error = f"{error_text(float(worst.measured), 1)} m, {_short(best.costs[worst.sentence])}"
         why = "; ".join(
             [f"as shipped: {one}" for one in _why(shipped)[:1] if one not in _why(best)] + _why(best)
         )

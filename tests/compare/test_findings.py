@@ -81,6 +81,8 @@ def test_readme_contains_no_other_number_and_is_short():
     ):  # fmt: skip
         text = re.sub(pattern, " ", text)
     assert re.findall(r".*\d.*", text) == []
+    plain = (ROOT / "reference_model" / "plain.py").read_text(encoding="utf-8")
+    assert len(plain.splitlines()) == 98
 
 
 def test_digits_beyond_the_parameters_are_left_to_the_files():
