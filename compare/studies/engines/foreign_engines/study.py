@@ -104,7 +104,7 @@ def _orders(
     ]
     orders, numerical, model = np.transpose(found)
     words = ", ".join(
-        f"{name} ({case}): {order:.3f}" for (name, case), order in zip(runs, orders, strict=True)
+        f"{name} ({CASES[case].name}): {order:.3f}" for (name, case), order in zip(runs, orders, strict=True)
     )
     dates = " and ".join(sorted({by_name[name].recorded for name in wanted}))
     return Measured(
@@ -112,7 +112,7 @@ def _orders(
         value=orders,
         error=numerical,
         model=float(np.max(model)),
-        components=[f"{name} ({case})" for name, case in runs],
+        components=[f"{name} ({CASES[case].name})" for name, case in runs],
         system=CASES[cases[0]].system,
         source=f"Recorded on {dates}; " + "; ".join(CASES[case].name for case in cases),
         note=f"{words}.",
