@@ -120,6 +120,11 @@ def test_an_engine_that_was_also_recorded_has_the_grade_of_its_motions(seen):
     assert cases(matrix(one).recorded[0]) == headings
 
 
+def test_an_engine_without_claims_in_the_studies_has_no_row(tmp_path):
+    one = run((replace(AGREEMENT, only=("good",)),), (GOOD, FAILING), folder=tmp_path)
+    assert [found.engine for found in glances(one, matrix(one))] == ["good"]
+
+
 def test_without_recorded_motions_the_coarsest_claim_grades(tmp_path):
     one = run((AGREEMENT,), (GOOD,), folder=tmp_path)
     (good,) = glances(one, matrix(one))

@@ -120,7 +120,7 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     place: Any = {"color": plots.BLACK, "markersize": 19.0, "markerfacecolor": "none", "zorder": 4.0}
     axes.plot(*shown(name, here), "o", **place)
     (x_here,), (y_here,) = shown(name, here)
-    axes.annotate("Fig. 11", (x_here, y_here), (11, 0), textcoords="offset points", va="center")
+    axes.annotate("Fig. 11", (x_here, y_here), (8, -11), textcoords="offset points", va="center")
     for rank, engine in enumerate(engines_in(data)):
         draw_dots(axes, name, engine, data[engine], rank)
     box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.15}
