@@ -18,7 +18,7 @@ import shutil
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -28,6 +28,7 @@ from compare.report.matrix import WORST_FIRST, State
 from compare.report.numbers import error_text, value_text
 from compare.report.quotes import Nature, parts, quote
 from compare.report.results_json import read_results
+from reference_model.systems import UNITS
 
 ROOT = Path(__file__).parents[1]
 
@@ -132,9 +133,17 @@ def _claims(numbers: Mapping[str, Number], names: Iterable[str]) -> Iterator[str
         if number.nature == "measured":
             quoted.setdefault(number.claim, {})[words] = number
     for claim, found in quoted.items():
-        values = [f"- {words}: {_with_error(number)}" for words, number in found.items()]
+        values = [
+            f"- {words.replace('_', ' ')}: {_with_error(replace(number, unit=number.unit or _unit(words)))}"
+            for words, number in found.items()
+        ]
         sentence = next(iter(found.values())).sentence
         yield "\n".join([f"### {claim}", "", f"{sentence}.", "", *values])
+
+
+def _unit(words: str) -> str:
+    """Return the unit of the parameter that ``words`` end with, or ""."""
+    return UNITS.get(words.split()[-1], "")
 
 
 def _with_error(number: Number) -> str:
