@@ -11,7 +11,7 @@ from compare.diagnosis import friction_benchmark
 from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.joint_probes import JOINT, first_check_of_joints
 from compare.diagnosis.ladder import RUNGS, falling
-from compare.diagnosis.probes import CHECKED_FOR, SLIDE, first_check
+from compare.diagnosis.probes import CHECKED_FOR, REACH, SLIDE, first_check
 from compare.diagnosis.row import RIGHT, Row
 from compare.engines import DeclaredLackError, Engine, OutOfRangeError, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
@@ -139,54 +139,46 @@ def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     return row if found is None else replace(row, **{part: found})  # names in PROBES are fields of the row
 
 
-SLACK = 1e-6  # stiffness in N/m of a spring that pulls with a constant force
-
-
 def benchmarked(engine: Engine) -> dict[str, Any]:
-    """Return the engine's results in ``friction_benchmark``, with weak springs for constant forces on blocks."""
+    """Return the engine's results in ``friction_benchmark``, with springs for constant forces on blocks."""
 
     def moved(case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
-        if case.inertia:
-            return _turned(engine, case, times)
-        x, y, vx, vy = case.start
-        common = {"mass": case.mass, "damping": case.damping, "friction_force": case.friction}
-        common |= {"disc_speed": case.plate_speed, "stiffness": case.stiffness}
-        start: tuple[float, ...] = case.start
-        if case.radius:
-            ring = {"contact_radius": case.radius, "polar_inertia": case.mass * case.radius**2}
-            system: System = DiscOnDisc(
-                **common, **ring, shaft_damping=0.0, shaft_speed=0.0, contact_points=None
-            )
-            start = (x, y, 0.0, vx, vy, case.spin)
-        elif case.force[0]:
-            system = PinOnDisc(**common | {"stiffness": SLACK}, offset=case.force[0] / SLACK)
-        else:
-            system = PinOnDisc(**common)
+        system, start, share = _system_of(case)
         try:
             states = engine.simulate(system, start, times).states
         except UnsupportedSystemError as error:
             raise NotImplementedError(str(error)) from None
         half = len(start) // 2
-        return [(*state[:2], *state[half : half + 2]) for state in states.tolist()]
+        places = [(*state[:half], 0.0)[:2] for state in states.tolist()]
+        return [(x / share, y, math.nan, math.nan) for x, y in places]  # only places are measured
 
     return friction_benchmark.run(moved)
 
 
-def _turned(engine: Engine, case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
-    ends = [(time, case.force[0] + case.growth * time) for time in times]
-    joint = FrictionJoint(
-        inertia=case.inertia,
-        friction_moment=case.friction,
-        static_ratio=case.static_ratio,
-        damping=case.damping,
-        stiffness=case.stiffness,
-        moment=tuple(ends),
-    )
-    try:
-        states = engine.simulate(joint, case.start[::2], times).states
-    except UnsupportedSystemError as error:
-        raise NotImplementedError(str(error)) from None
-    return [(angle, 0.0, spin, 0.0) for angle, spin in states.tolist()]
+def _system_of(case: friction_benchmark.Case) -> tuple[System | FrictionJoint, tuple[float, ...], float]:
+    """Return the system of a case, its start, and its path as a share of that under the force of the case.
+
+    A spring from as far away as the probes reach, or somewhat more, stands for a constant force. Under constant
+    friction the path a·t²/2 becomes a·(1 − cos φ)/k, φ = t·√k, with the stiffness k over the mass.
+    """
+    x, y, vx, vy = case.start
+    common = {"stiffness": case.stiffness, "damping": case.damping}
+    if case.inertia:
+        common |= {"friction_moment": case.friction, "static_ratio": case.static_ratio}
+        ends = tuple((time, case.force[0] + case.growth * time) for time in (0.0, case.until))
+        return FrictionJoint(inertia=case.inertia, moment=ends, **common), (x, vx), 1.0
+    common |= {"mass": case.mass, "friction_force": case.friction, "disc_speed": case.plate_speed}
+    if case.radius:
+        ring = {"contact_radius": case.radius, "polar_inertia": case.mass * case.radius**2}
+        disc = DiscOnDisc(**common, **ring, shaft_damping=0.0, shaft_speed=0.0, contact_points=None)
+        return disc, (x, y, 0.0, vx, vy, case.spin), 1.0
+    if not (pull := case.force[0]):
+        return PinOnDisc(**common), case.start, 1.0
+    slides = pull > case.friction
+    reach = max(REACH, pull * case.until**2 / case.mass) if slides else REACH
+    phase = math.sqrt(pull / reach / case.mass) * case.until
+    share = 2.0 * (1.0 - math.cos(phase)) / phase**2 if slides else 1.0
+    return PinOnDisc(**common | {"stiffness": pull / reach}, offset=reach), case.start, share
 
 
 # --- Rows from recordings of foreign engines.

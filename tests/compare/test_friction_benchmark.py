@@ -59,6 +59,19 @@ def test_the_exact_reference_confirms_every_closed_form():
     assert results["score"] == {"exact": 25, "good": 0, "fair": 0, "fails": 0, "not simulated": 0}
 
 
+def test_no_spring_begins_far_beyond_its_motion():
+    """Engines in single precision round coordinates; one that does so at 10 m resolves 1 μm."""
+    reaches = []
+
+    class Watched:
+        def simulate(self, system, start, times):
+            reaches.append(abs(system.offset))
+            return reference.simulate(system, start, times)
+
+    benchmarked(Watched())
+    assert 9.0 <= max(reaches) < 9.81 * 2.0**2  # the farthest fall in the 2 s of a ramp, twice
+
+
 def test_the_command_prints_and_writes_the_benchmark(tmp_path, monkeypatch, capsys, in_this_process):
     (tmp_path / "stepper.py").write_text(
         inspect.getsource(stepped)
