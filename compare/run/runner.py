@@ -149,7 +149,8 @@ class _Runner:
     expected: Mapping[tuple[str, str], float]
     progress: Progress
     began: dict[Hashable, float] = field(default_factory=dict)
-    took: dict[tuple[str, str], float] = field(default_factory=dict)  # s, without work of an earlier run
+    start: float = field(default_factory=time.monotonic)
+    took: list[tuple[str, str]] = field(default_factory=list)  # work that an earlier run had not done
     stamps: dict[str, str | None] = field(default_factory=dict)
     drawn_from: dict[str, str] = field(default_factory=dict)
     courses: dict[Hashable, tuple[Course, Generator[Work, Done, Findings]]] = field(default_factory=dict)
@@ -204,15 +205,11 @@ class _Runner:
             for study in result.studies
             for key in ((study.name, column) for column in result.columns(study))
         }
-        spent = {key: now - began for key, began in self.began.items() if key in whole}
-        left = {
-            key: max(each - spent.get(key, 0.0), 0.0)
-            for key, each in whole.items()
-            if key not in result.outcomes
-        }
-        late = sum(max(each - whole[key], 0.0) for key, each in spent.items())
-        seen = sum(self.took.values()) + late
-        pace = (TRUSTED + seen) / (TRUSTED + sum(whole[key] for key in self.took))
+        spent = {key: min(now - began, whole[key]) for key, began in self.began.items() if key in whole}
+        left = {key: each - spent.get(key, 0.0) for key, each in whole.items() if key not in result.outcomes}
+        seen = sum(whole[key] for key in self.took) + sum(spent.values())
+        elapsed = self.jobs * (now - self.start)  # with figures, errata and other load
+        pace = (TRUSTED + elapsed) / (TRUSTED + seen)
         total = sum(len(result.columns(study)) + 1 for study in result.studies) + len(result.errata)
         names = ", ".join(_name_of(key) for key in running)
         seconds = pace * max(sum(left.values()) / self.jobs, *left.values(), 0.0)
@@ -234,7 +231,8 @@ class _Runner:
         if last is None:
             return
         self.result.outcomes[kind, name] = last.value
-        self.result.seconds[kind, name] = self.took[kind, name] = last.seconds
+        self.result.seconds[kind, name] = last.seconds
+        self.took.append((kind, name))
         if isinstance(last.value, Findings) and not last.value.gaps:
             self.store.keep(kind, name, self.stamps[name], last.value, last.seconds)
         self._draw_if_complete(kind)
