@@ -5,6 +5,7 @@ import importlib
 import re
 import runpy
 import sys
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -15,7 +16,7 @@ from matplotlib.image import imread as read_image
 from scipy.integrate import solve_ivp
 
 from compare.cli import app as cli
-from compare.engines import reference
+from compare.engines import EVERY_KIND, Engine, reference
 from exudyn_models import PASSENGER_CAR
 from fmu_models.archive import compiler
 from reference_model import DiscOnDisc, PinOnDisc, self_centred_equilibria, simulate
@@ -240,8 +241,8 @@ def test_an_example_draws_its_picture_of_the_gallery(name, tmp_path):
     assert read_image(tmp_path / "drawn.png").shape == pytest.approx(shown.shape, abs=2)
 
 
-def test_the_study_of_the_guide_for_contributors_agrees_and_draws(tmp_path, monkeypatch):
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Add a study")[2]
+def test_the_claim_of_the_guide_for_contributors_agrees_draws_and_detects_its_fault(tmp_path, monkeypatch):
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## How a claim is born")[2]
     blocks = re.findall(r"```(?:markdown|python)\n(.*?)```", text, re.DOTALL)
     (tmp_path / "pin" / "at_rest").mkdir(parents=True)
     names = ("study.md", "study.py", "pictures.py", "__init__.py")
@@ -255,6 +256,12 @@ def test_the_study_of_the_guide_for_contributors_agrees_and_draws(tmp_path, monk
     assert np.all(difference <= measured.error)
     assert np.max(measured.error) < 1e-6  # the resolution of its claim
     assert study.title == "The pin at rest"
+    weak = Engine(
+        "weak", lambda pin, *a, **k: simulate(replace(pin, friction_force=0.0891), *a, **k), EVERY_KIND
+    )
+    faulty = sys.modules["at_rest.study"].rests(weak)
+    assert np.linalg.norm(np.subtract(faulty.predicted, faulty.value)) > 1e-3
+    assert np.max(faulty.error) < 1e-10
     (figure,) = sys.modules["at_rest.pictures"].draw({"reference": measured.data}).values()
     figure.savefig(tmp_path / "drawn.png")
 
