@@ -59,7 +59,7 @@ class Scales:
 
     @property
     def looked_at(self) -> str:
-        """Ranges in words of the variables on slides that keep their speed and whose force is ``KNOWN``."""
+        """The examined ranges: slides at constant speed whose force is known to ``KNOWN``."""
         return self.ranges(self.keep & (self.errors <= KNOWN))
 
     def ranges(self, chosen: NDArray[np.bool_]) -> str:

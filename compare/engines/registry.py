@@ -91,7 +91,7 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 
 
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
-    """Return the engines of the given names, or by default all registered engines except those on request.
+    """Return the engines of the given names, or by default all registered engines except those that must be named.
 
     A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Raises ``ValueError``
     if a name is unknown or cannot be imported.

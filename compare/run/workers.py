@@ -235,7 +235,7 @@ class _Worker:
     def end(self) -> None:
         self.dead = True
         if self._process.pid is not None and hasattr(os, "killpg"):
-            with suppress(ProcessLookupError, PermissionError):  # it leads no group yet, or no longer
+            with suppress(ProcessLookupError, PermissionError):  # it does not lead a group yet, or has ended
                 os.killpg(self._process.pid, signal.SIGKILL)  # includes processes of an engine
         self._process.kill()  # compiled code may ignore weaker signals
         self._process.join()

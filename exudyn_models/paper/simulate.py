@@ -84,8 +84,8 @@ def simulate(
         Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
         the last time.
     tolerance
-        Requested accuracy, relative to the motion's own length and speed, see ``scales``. While the contact
-        slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
+        Requested accuracy, relative to the motion's own length and speed, see ``scales``. The explicit solver keeps
+        the error near it while the contact slips. Stick and pivoting add errors of first order in the regularisation.
     regularisation
         ε in m/s below which friction is viscous; by default 100·tolerance times the motion's own speed, reported as
         ``solution.regularisation``. Keep it well above the tolerance. For very soft springs pass ε explicitly,

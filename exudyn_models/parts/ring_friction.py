@@ -21,8 +21,8 @@ through friction and presses nothing together.
 - ``slip_speed`` in m/s, the mean slip speed P of the contact,
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
-They may read sensors of ``mbs``, but of this contact only those of slip and heat. The Jacobian contains their
-derivatives with respect to all arguments except time, and none through sensors.
+They may read sensors of ``mbs``, but only the slip and heat sensors of this contact. The Jacobian includes their
+derivatives with respect to all arguments except time. It does not include dependencies through sensors.
 
 *Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
 ``solve_dynamic`` with an implicit solver. Switching times are as accurate as the steps. A contact on one axis that

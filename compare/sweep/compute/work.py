@@ -204,7 +204,7 @@ def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
-    """Return times and radii of passages of the positive x-axis with the master disc, by interpolation."""
+    """Return interpolated times and radii of crossings of the positive x-axis in the disc's direction."""
     x, y = trajectory.states.T[:2]
     y = math.copysign(1.0, trajectory.system.disc_speed) * y
     at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (x[1:] > 0.0) & (trajectory.times[:-1] >= since))

@@ -35,12 +35,12 @@ class LawFunction:
 
     @property
     def places(self) -> float:
-        """The ``arguments`` as bits of a number."""
+        """The ``arguments`` as a bit mask."""
         return bits_of(self.arguments)
 
 
 def bits_of(arguments: Collection[str]) -> float:
-    """Return some of ``ARGUMENTS`` as bits of a number."""
+    """Encode a subset of ``ARGUMENTS`` as a bit mask."""
     return float(sum(1 << i for i, name in enumerate(ARGUMENTS) if name in arguments))
 
 

@@ -1,4 +1,4 @@
-"""Exact stick of a contact at several points, which stick and slide one by one.
+"""Exact stick of a contact at several points that stick and slide individually.
 
 Every point is a pin with its share of the load. If one sticks, the disc pivots about it. If joints allow only spin,
 the points stick and slide together.

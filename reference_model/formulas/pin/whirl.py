@@ -83,9 +83,8 @@ def require_whirl(pin: PinOnDisc) -> None:
         frequency = circling_speed(pin, radius)
         if abs(pin.disc_speed) <= frequency:
             raise ValueError(
-                f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if the disc turns faster than the "
-                f"{frequency:g} rad/s at which the support carries the pin on a circle of {radius:g} m; here the "
-                "pin ends by sticking"
+                f"disc_speed = {pin.disc_speed:g} rad/s: a whirl needs |disc_speed| > {frequency:g} rad/s, the speed "
+                f"of free motion on a circle of {radius:g} m; below it the pin ends up sticking"
             )
         return
     if abs(pin.disc_speed) <= pin.natural_frequency:

@@ -245,7 +245,7 @@ OF_RINGS = (
 
 
 @STUDY.claim(
-    "An annulus with a resting point converges with the number of rings at order 12",
+    "With a resting point, the ring approximation of an annulus converges with order 12",
     kind="order",
     resolution=1.5,
     note=OF_RINGS,
@@ -283,7 +283,7 @@ def of_orders(observed: Sequence[tuple[float, float, float]], order: float, **mo
 
 
 @STUDY.claim(
-    "A thin annulus equals a ring, up to the square of its width",
+    "A thin annulus acts like a ring; the difference is of second order in its width",
     equation="(20)",
     kind="order",
     resolution=0.1,

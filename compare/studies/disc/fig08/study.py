@@ -332,7 +332,7 @@ def printed_26() -> Measured:
 
 
 @STUDY.claim(
-    "The corrected (26) ends at the μN at which friction (23) holds the disc against springs and shaft",
+    "The branch of the corrected (26) ends at the load that lets friction (23) hold the disc",
     equation="(5), (26)",
     unit="N",
     resolution=1e-9,

@@ -59,7 +59,7 @@ def critical(engine: Engine) -> Measured:
 
 @functools.lru_cache(maxsize=4)
 def critical_of(engine: Engine) -> tuple[float, Measurement]:
-    """Return the critical X0 (m) by exact multipliers and by the engine's, NaN if there is none."""
+    """Return the critical X0 (m) from the exact multipliers and from the engine's; NaN if there is none."""
     found = functools.cache(lambda tolerance: theory.critical_offset(engine, tolerance))
     try:
         measured, error = refined(lambda tolerance: found(tolerance)[0])

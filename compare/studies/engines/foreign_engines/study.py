@@ -68,9 +68,7 @@ def disc_slides() -> Measured:
     return _orders(1.0, tuple(name for name in theory.FIRST_ORDER if name not in left_out), ("disc",))
 
 
-@_of_order(
-    "With a friction pyramid or box, which differ from the cone, the errors of pin and disc do not fall with the step"
-)
+@_of_order("Engines with a friction pyramid or box do not converge for pin or disc")
 def axes_stay_off() -> Measured:
     return _orders(0.0, theory.BY_AXIS, ("slip", "disc"))
 
