@@ -194,8 +194,8 @@ def ends(engine: Engine) -> Measured:
     equation="(17)",
     kind="trajectory",
     resolution=1e-5,
-    note="Predicted: the periodic orbit of the reference, by shooting at the paper's scale. Its accuracy of 1e-9 of "
-    "X0 is part of the error.",
+    note="Predicted: the periodic orbit of the reference, by shooting at the paper's scale. The accuracy of "
+    "this orbit, 1e-9 of X0, is part of the error.",
 )
 def whirls(engine: Engine) -> Measured:
     orbit = exact_whirl()
@@ -241,7 +241,8 @@ def spins(engine: Engine) -> Measured:
     kind="trajectory",
     unit="m, rad, m/s, rad/s",
     resolution=1e-6,
-    note="In the units of the paper's scale. Predicted: SciPy's integration of (19) as printed, at the paper's "
+    note="Measured in the units of the paper's scale. Predicted: SciPy's integration of (19) as printed, at "
+    "the paper's "
     "scale.",
     each=DISCS,
 )

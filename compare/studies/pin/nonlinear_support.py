@@ -266,7 +266,7 @@ def rests(engine: Engine) -> Measured:
     note="According to the paper, nonlinear radial forces usually limit the amplitude. The pin sticks when its "
     "circle turns with the disc, up to an effect of the holding friction of the order μN. Measured: value at 0 of "
     f"the parabola through the radii for μN = {', '.join(f'{load:g}' for load in GROWING_LOADS)} N. "
-    f"Error: its change for the straight line through the last two. With {LAWS}.",
+    f"Error: the change with the straight line through the last two radii. With {LAWS}.",
     swept=("friction_force",),
 )
 def growth_ends(engine: Engine) -> Measured:

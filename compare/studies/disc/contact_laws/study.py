@@ -239,7 +239,8 @@ def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
 
 
 OF_RINGS = (
-    f"With {', '.join(map(str, RINGS))} rings on either side of the ring with the resting point, compared with 100. "
+    f"With {', '.join(map(str, RINGS))} rings on either side of the ring with the resting point, compared "
+    f"with 100 rings. "
     "Errors: scatter, and the change without a next term."
 )
 

@@ -238,8 +238,8 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
 @STUDY.claim(
     "A disc on the axis sticks to the master disc above the μN at which the equilibrium ends, but not below",
     equation="(5)",
-    note=f"Does it stick, or not, after {STICKING_TIME:g} s at "
-    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} of this μN? Starts on the axis with 95 % of the "
+    note=f"Does the disc stick after {STICKING_TIME:g} s at "
+    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} times this μN? Starts on the axis with 95 % of the "
     "speed of the master disc.",
     basis="reference",
     swept=("friction_force",),

@@ -40,8 +40,8 @@ FOLLOWED = (
     unit="1/s",
     resolution=1e-6,
     note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. According to the paper, this "
-    "equilibrium is stable at every speed; only that of the pin is. The friction of a ring grows with its slip. On a "
-    f"master disc faster than k, it drives the disc around more than β damps it. {FOLLOWED}",
+    "equilibrium is stable at every speed; only that of the pin is. The friction of a ring grows with its slip. "
+    f"If ω > k, friction drives the disc around by more than β damps. {FOLLOWED}",
     basis="reference",
     swept=("friction_force",),
 )
@@ -272,8 +272,8 @@ def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Mea
     equation="(7)",
     kind="trajectory",
     resolution=2e-3,
-    note="Displacement on the master disc relative to the radius, and (spin − ω)/ω, after 1.5 times the release time "
-    f"of (7) for the continuous ring; at {theory.OUTSIDE[-1]:g} of the radius (9). "
+    note=f"Starts at {theory.OUTSIDE[-1]:g} times the radius (9). Displacement on the master disc relative to the "
+    "radius, and (spin − ω)/ω, after 1.5 times the release time (7) of the continuous ring. "
     f"{BY_REFERENCE}",
     swept=("friction_force",),
 )

@@ -301,9 +301,9 @@ def heat(engine: Engine, throws: Throws = RINGS) -> Measured:
 
 
 @STUDY.claim(
-    "The speeds end in a finite ratio for mR²/2 < J < 2mR², and for no other J",
+    "The ratio of the speeds stays finite only for mR²/2 < J < 2mR²",
     equation="(20)",
-    note="Is there, or is there not, a balance of both decelerations in the closed form of (20)? For "
+    note="Does the closed form of (20) contain a balance of both decelerations? For "
     f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:

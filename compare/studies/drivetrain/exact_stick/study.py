@@ -29,8 +29,8 @@ READ = np.array([0.2, 0.48, 0.8, 1.12, 1.2])
 """Times in s at the ends of steps."""
 
 NOTE = (
-    "With both implicit solvers. Numerical error: the change from twice the step, three times an error of second "
-    "order, or a quarter of the change before."
+    "Measured with both implicit solvers. Numerical error: the largest of three numbers: the change from "
+    "twice the step, three times an error of second order, and a quarter of the previous change."
 )
 BEGINS = {STUCK: "sticks", FORWARD: "slips forward", BACKWARD: "slips backward", OPEN: "opens"}
 
@@ -147,7 +147,7 @@ def switches(engine: Engine, case: Case) -> Measured:
     "A pendulum with a dry bearing reverses and rests at the angles of its energy balance",
     unit="rad",
     resolution=1e-5,
-    note=f"The heat is divided by the moment of the bearing. {NOTE}",
+    note=f"Heats are divided by the moment of the bearing. {NOTE}",
 )
 def pendulum(engine: Engine) -> Measured:
     angles = theory.swings()

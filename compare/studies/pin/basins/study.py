@@ -258,9 +258,8 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
 @STUDY.claim(
     "The stable set of the saddle-type orbit separates the starts of the equilibrium from those of the whirl",
     note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting and cubic splines. Some starts "
-    "end as if they were on the other side of the splines. For those of them that are farthest away, shooting "
-    "determines the side of the saddle's stable set, and the claim fails for a start if that is not the side of its "
-    "end.",
+    "end as if they were on the other side of the splines. For the farthest of these starts, shooting "
+    "determines their side of the saddle's stable set. The claim fails if one of them ends on the other side.",
     basis="reference",
 )
 def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
@@ -329,8 +328,8 @@ def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS
 
 @STUDY.claim(
     "The basin of the self-centred equilibrium shrinks as ω grows",
-    note=f"Is the share of the same {STARTS} random starts at each of {len(SPEEDS)} speeds not larger than at the "
-    "previous one?",
+    note=f"Is the share of the same {STARTS} random starts at each of {len(SPEEDS)} speeds at most the share "
+    f"at the previous speed?",
     basis="independent",
     swept=("disc_speed",),
 )

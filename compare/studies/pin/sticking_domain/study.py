@@ -266,8 +266,9 @@ def _between(
     equation="(9)",
     resolution=1e-2,
     note=f"By bisection to {PRECISION:g} of the radius, with starts that pass the angle of the largest force. "
-    "Relative to (9). Error: the error of the bisection, and the change at a smaller tolerance. Neither shows an "
-    "error below 1e-3, because just outside the radius the slip grows from zero like the power 3/2 of the distance. "
+    "Relative to (9). Error: the error of the bisection, and the change at a smaller tolerance. Both miss an "
+    "error below 1e-3, because just outside the radius the slip grows from zero like the power 3/2 of the "
+    "distance. "
     "Regularised friction hides it: Exudyn's radii have errors of 2e-4 to 6e-4 at tolerances from 1e-6 to 1e-8.",
     swept=("disc_speed",),
 )

@@ -136,7 +136,7 @@ def excluded() -> Measured:
 
 
 @STUDY.claim(
-    "To first order in the spin, the direction of slip turns at −μ²gLω/v², whatever the distribution of the load",
+    "To first order in the spin, the slip direction turns at −μ²gLω/v², whatever the distribution of the load",
     resolution=1e-6,
     note="Friction across the path over μ²mgLω/v, for a spin of 10⁻⁴·v/L. Model error: its square.",
 )
@@ -221,8 +221,8 @@ def slid(engine: Engine) -> Measurement:
     basis="independent",
     resolution=0.1,
     friction=False,
-    note="As the claim on the measured paths, for the 24 slides with the fastest spin. Error: two standard errors of "
-    "the measurement on as many slides.",
+    note="Measured like the claim on the measured paths, for the 24 slides with the fastest spin. Error: two "
+    "standard errors of the measurement for 24 slides.",
 )
 def turns(engine: Engine) -> Measured:
     share, error = laws_in(measured()) * [[1.0], [SIGMAS * math.sqrt(len(measured()["toss"]) / FEWER)]]
@@ -261,7 +261,7 @@ def decelerates(engine: Engine) -> Measured:
     resolution=0.1,
     friction=False,
     note="Share of the first spin that is left when the speed has fallen, for the 24 slides with the fastest spin. "
-    "The load is even on the corners. Error: two standard errors of the measurement.",
+    "The corners share the load equally. Error: two standard errors of the measurement.",
 )
 def spins(engine: Engine) -> Measured:
     share, error = spins_left(fastest()["spins"], fastest()["spin_first"])
