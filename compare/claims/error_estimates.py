@@ -141,8 +141,8 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
     """Return the order in h of ``errors`` at halved steps (shape (n,), n >= 4), its numerical and its model error.
 
     Orders observed between neighbours are a series in h, so 2·(last) − (second last) gains one power. The model error
-    is the last change of the observed orders, the numerical error that of the extrapolated ones, plus the effect of
-    ``noise``.
+    is the last change of the observed orders. The numerical error is the last change of the extrapolated orders, plus
+    the effect of ``noise``.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0

@@ -55,7 +55,7 @@ def measured_eigenvalues(
     eigenvalues.
 
     The motion must slide from ``state``, shape (4,) or (6,), and is steady in axes that turn with ``frame_speed``
-    (rad/s). A disc has a continuous ring and five eigenvalues, without that of its angle.
+    (rad/s). A disc has a continuous ring and five eigenvalues, without the eigenvalue of its angle.
     """
     state = np.asarray(state, dtype=float)
     moving, size = _deviations(system, state)

@@ -36,7 +36,7 @@ FIG8 = DiscOnDisc(
 )
 """Parameters of Fig. 8, which varies the load; the load here is our choice.
 
-The paper omits X0; we use that of Figs. 4 to 6.
+The paper omits X0; we use the value of Figs. 4 to 6.
 """
 
 FIG9 = replace(FIG8, disc_speed=1.5, shaft_speed=1.25)

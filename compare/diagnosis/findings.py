@@ -73,7 +73,7 @@ class History:
 class Shares:
     """Forces divided by the exact ones, and their errors; NaN where there is none.
 
-    They are those of ``probes.SUPPORTS`` or ``NONLINEAR``, shape (n,), force and moment on discs, shape (n, 2), or
+    They refer to ``probes.SUPPORTS`` or ``NONLINEAR``, shape (n,), to force and moment on discs, shape (n, 2), or
     friction far from the axis, shape (1,).
     """
 

@@ -93,7 +93,7 @@ class Push:
     def within(self, limits: Ranges) -> Push:
         """Return the slide about its place, with lengths, speeds and load so small that it stays within limits.
 
-        The limits are those of the engine and ``REACH``.
+        The engine's limits and ``REACH`` apply.
         """
         half = 0.5 * (SETTLES_FOR + self.lasts) * self.velocity
         reach = min(REACH, limits.coordinate) / (abs(self.place) + abs(half))

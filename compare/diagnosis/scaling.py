@@ -297,7 +297,7 @@ def _alike(sizes: FloatArray) -> str:
 
 
 def _everywhere(sizes: FloatArray) -> str:
-    """Describe deviations of all slides but those of one condition."""
+    """Describe deviations of all slides except under one condition."""
     if not (alike := _alike(sizes)):
         return ""
     return f"{alike} except for {SLIDE.mass:g} kg, {SLIDE.friction_force:g} N and {SLIDE_SPEED:g} m/s"

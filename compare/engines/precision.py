@@ -38,7 +38,7 @@ def are_single(states: FloatArray) -> bool:
 def blurred_start(system: AnySystem, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
     """Return ``state``, of any shape, with its position or angle moved by noise of size ``precision``.
 
-    The velocity changes by that of the master disc, so a sticking body still sticks.
+    The velocity of the master disc is added, so a sticking body still sticks.
     """
     half = len(state) // 2
     moved = _blurred(state[np.newaxis], precision, tolerance, state)[0]

@@ -1,4 +1,4 @@
-"""Engines by name: those of this project, of installed packages, and functions of modules."""
+"""Engines by name: engines of this project and of installed packages, and functions of modules."""
 
 import importlib
 import os

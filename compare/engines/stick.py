@@ -61,7 +61,7 @@ class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
     ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance
-    divided by 1e-9, ``precision`` and ``step`` (s) are those of the engine.
+    divided by 1e-9, ``precision`` and ``step`` (s) belong to the engine.
     """
 
     def __init__(

@@ -65,8 +65,8 @@ WORST_FIRST = (
 class Cell:
     """One engine's answer to one claim: the worst state of usually one claim.
 
-    ``reason`` is that of a missing verdict, ``evidence`` the kind of evidence, "" without a verdict. ``implied_by``
-    is the claim, or the engine with the same claim, whose verdict implies this one.
+    ``reason`` says why a verdict is missing; ``evidence`` is the kind of evidence, "" without a verdict.
+    ``implied_by`` is the claim, or the engine with the same claim, whose verdict implies this one.
     """
 
     state: State

@@ -23,7 +23,7 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 OFF_BY = 1e-4
-"""Error of the wrong answers relative to each component's size, larger than those of engines."""
+"""Error of the wrong answers relative to each component's size, larger than the errors of engines."""
 
 
 @dataclass(frozen=True)

@@ -167,7 +167,7 @@ class RowLaw:
 
     @property
     def parts(self) -> Sequence[RowLaw]:
-        """Laws with own locks: this one, or those of several points."""
+        """Laws with locks of their own: this law, or the laws of several points."""
         return (self,)
 
     @property
@@ -198,7 +198,7 @@ class RowLaw:
         raise NotImplementedError
 
     def moment(self, t: float, spin: float) -> float:
-        """Return the moment f in N m in slip, without that of the constraint."""
+        """Return the moment f in N m in slip, without the moment of the constraint."""
         raise NotImplementedError
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
@@ -319,7 +319,7 @@ class AxialStick(RowLaw):
         return self.moment(0.0, 0.0) * np.array(self.gradient([]))
 
     def moment(self, t: float, spin: float) -> float:
-        """Return the moment in N m on the disc, without that of the constraint."""
+        """Return the moment in N m on the disc, without the moment of the constraint."""
         if not self.slides:
             return 0.0
         direction = int(self.mode or 0)

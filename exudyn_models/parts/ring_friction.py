@@ -8,7 +8,7 @@ pressure. Friction is Coulomb's above the slip speed ε and viscous below.
 its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a master at
 rest. ``computeMassMatrixInversePerBody`` must stay False, because nodes are shared with their bodies.
 
-The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
+The axis of the contact is the z-axis of the master's body, through its node, or the z-axis of the ground. A
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
 ``rotationMarker1`` of Exudyn's joints; the x-axis on the disc points to the first contact point. The plane of contact
 passes through the disc's node or marker, across this axis; a small tilt of the disc is neglected. The load acts only

@@ -41,7 +41,7 @@ class Steps:
     """States at the start and after every step of a solver.
 
     ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities; and
-    their ``accelerations``, shape (n, d). ``evaluations`` counts those of the equations of motion.
+    their ``accelerations``, shape (n, d). ``evaluations`` counts evaluations of the equations of motion.
     """
 
     times: FloatArray

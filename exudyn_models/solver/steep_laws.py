@@ -1,4 +1,4 @@
-"""Detection of implicit steps that skip a peak of friction, such as that of ``static_ratio`` or a Stribeck curve.
+"""Detection of implicit steps that skip a peak of friction, due to ``static_ratio`` or a Stribeck curve.
 
 If friction falls within the slip change of a step, Newton's method may find a contact that holds, or one that has
 passed its peak and runs away.

@@ -46,7 +46,7 @@ def along(a: Unknowns, y: Unknowns, law: Law) -> float:
 
 @part
 def seen(y: Unknowns, law: Law, new: Law) -> Unknowns:
-    """Return the unknowns of ``new`` for those of ``law``; only the point differs."""
+    """Convert the unknowns of ``law`` to the unknowns of ``new``; only the point differs."""
     ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
     vx, vy = slip_of(ux, uy, y[4], y[5], new)
     return (y[0], y[1], vx, vy, y[4], y[5], y[6])

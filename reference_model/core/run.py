@@ -44,7 +44,7 @@ from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 AT_REST = 1e-15
-"""Slip speed of a point, as a share of that of the centre, that is rounding error."""
+"""Slip speed of a point that is rounding error, as a share of the centre's slip speed."""
 
 NO_CREEP = (0.0, 0.0, 0.0, 0.0)
 

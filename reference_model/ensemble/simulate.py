@@ -44,8 +44,8 @@ def simulate_ensemble(
 ) -> Ensemble:
     """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. Results are bitwise independent of the other trajectories
-    and of ``threads``. Raises ``ValueError`` if an argument is invalid.
+    The physics is the same as in :func:`reference_model.simulate`. Results are bitwise independent of the other
+    trajectories and of ``threads``. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     dt + b∫(φ̇ − Ω)dt, where C is the force of the support divided by its deflection. So the residual shows errors in
     any force, and whether the integrator conserves energy.
 
-    The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
+    The code integrates a quintic spline through the samples of each phase, with an error of sixth order in the
     sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` for a single time.
     """
     if not isinstance(trajectory, Trajectory):

@@ -1,9 +1,9 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pull equals friction, (7) with equality. So one number contains the motion before: the lag α of the
-pull behind that of the offset, between 0 and π. Orbits are the fixed points of the map from one α to the next, and
-its slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
-where the next stick phase vanishes.
+At a release the pull equals friction, (7) with equality. So one number contains the previous motion: the lag α of the
+pull behind the offset's pull, between 0 and π. Orbits are the fixed points of the map from one α to the next, and its
+slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps where
+the next stick phase vanishes.
 """
 
 import cmath
@@ -97,7 +97,7 @@ class ReleaseMap:
         return np.array((z.real, z.imag, v.real, v.imag))
 
     def angle(self, state: ArrayLike) -> float:
-        """Return the lag of the pull behind that of the offset, for a ``state`` of rest, shape (4,)."""
+        """Return the lag of the pull behind the offset's pull, for a ``state`` of rest, shape (4,)."""
         x, y = np.asarray(state)[:2].tolist()
         pull = self._offset_pull + self._carried_pull * complex(x, y)
         return -math.copysign(1.0, self.pin.disc_speed) * cmath.phase(pull / self._offset_pull)

@@ -71,7 +71,7 @@ FARTHEST_PERIOD = 0.5
 UNRESOLVED = 1e-6
 """Largest amplitude of the harmonics beyond a third of the number of samples, relative to the largest amplitude.
 
-The harmonic whose number is that of the samples, which the trapezoidal rule takes for a mean, is smaller.
+The harmonic with the number of the samples, which the trapezoidal rule takes for a mean, is smaller.
 """
 
 COLLAPSED = 1e-6
@@ -302,7 +302,7 @@ def shoot(
 
 
 def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
-    """Fix x at y = 0 and make the load unknown, starting from that of an orbit as ``guess``."""
+    """Fix x at y = 0 and make the load unknown, starting from the load of the orbit ``guess``."""
     unknowns[[X, Y]] = x, 0.0
     sought[sought.index(X)] = LOAD
     if isinstance(guess, Orbit):
@@ -336,7 +336,7 @@ def without_angle(state: FloatArray) -> FloatArray:
 def size_of(system: System, part: FloatArray) -> FloatArray:
     """Return the scales of the state without angle, of the same shape."""
     size = np.full(len(part), np.max(np.abs(part[:SPIN])))
-    if isinstance(system, DiscOnDisc):  # the speed of the rim counts like that of the centre
+    if isinstance(system, DiscOnDisc):  # the speed of the rim counts like the speed of the centre
         size[SPIN] /= system.contact_radius
     return size
 

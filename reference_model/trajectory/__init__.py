@@ -84,8 +84,8 @@ def phases_of(begun: Sequence[tuple[Kind, float, FloatArray]], end: float) -> tu
 class Solution:
     """How a trajectory was computed.
 
-    ``evaluations`` counts those of the equations of motion, ``steps`` the accepted ones, and ``wall_time`` is in s.
-    ``regularisation`` is the slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
+    ``evaluations`` counts evaluations of the equations of motion, ``steps`` accepted steps, and ``wall_time`` is in
+    s. ``regularisation`` is the slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
     """
 
     method: str

@@ -76,7 +76,7 @@ def output(engine: Engine) -> Output:
         if engine.simulates(disc):
             system, start = disc, (*PLACE, 0.0, *VELOCITY, SPIN)
     ladder = Ladder.of(engine, lambda tolerance: _ratios(engine, system, start, tolerance))
-    # states may be those of the nearest steps
+    # the states may belong to the nearest steps
     noise = (DISTINCT * engine.noise + (engine.step or 0.0)) / float(np.min(np.diff(TIMES)))
     order, difference = _batch(engine, system, start)
     changes = np.max(np.abs(np.diff(ladder.values[-3:], axis=0)), axis=0)

@@ -181,7 +181,7 @@ def _laws(right: Contact) -> list[Law]:
 def law_of(found: Patch, strength: float) -> tuple[str, bool]:
     """Return the law of discs in words, and whether it is right; ``strength`` is the factor of μ of blocks.
 
-    The law is that of the first wrong kind, and lists those that explain force and moment, or the closest.
+    The law of the first wrong kind counts; it lists the laws that explain force and moment, or the closest law.
     """
     allowed, right = max(CLOSE, found.error), ""
     for kind, motions, measured in zip(found.kinds, found.motions, found.wrenches, strict=True):

@@ -173,7 +173,7 @@ class Conversation:
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(patience)
         self._kill()
-        PROGRAMS.discard(self._process.pid)  # its time counts as that of an ended process from now on
+        PROGRAMS.discard(self._process.pid)  # from now on, its time counts as the time of an ended process
         self._process.wait()
         self._output.close()
         if self._guard is not None:
@@ -245,7 +245,7 @@ def _environment() -> dict[str, str]:
 
 
 def _guard_of(group: int) -> subprocess.Popen[bytes]:
-    """Start a process that kills those of ``group`` after the end of this process."""
+    """Start a process that kills the processes of ``group`` after the end of this process."""
     return subprocess.Popen(
         ("/bin/sh", "-c", END_WITH_US, str(group)),
         stdin=subprocess.PIPE,

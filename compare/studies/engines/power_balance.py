@@ -21,8 +21,8 @@ SAMPLE_DISTANCE, FINE = 0.02, 0.2 * 0.02
 CLOSER, NUMBER, ROUGH = 0.8, 40, 1e-7
 """More samples near the bounds of phases, where integrands are not smooth.
 
-Their distances from a bound are those of a geometric series with this ratio and number of terms, from the sampling
-interval on. The bounds are those of the reference at the tolerance ``ROUGH``, because other engines' differ by less.
+Their distances from a bound form a geometric series with this ratio and number of terms, from the sampling interval
+on. The reference supplies the bounds at the tolerance ``ROUGH``; the bounds of other engines differ by less.
 """
 
 RESOLUTION = 1e-8

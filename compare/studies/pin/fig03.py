@@ -66,7 +66,7 @@ def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
 
 
 def along_and_across(values: Sequence[complex]) -> list[complex]:
-    """Return the eigenvalues of motion along the circumference, those of the support alone, then the others."""
+    """Return the eigenvalues of motion along the circumference, damped by the support alone, then the others."""
     m, beta, C = PIN.mass, PIN.damping, PIN.stiffness
     along = sorted(values, key=lambda value: abs(m * value**2 + beta * value + C))
     return [

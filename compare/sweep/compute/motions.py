@@ -12,7 +12,7 @@ from reference_model.systems import FloatArray
 GAP = 0.05
 """Relative gap in the largest radius between two motions; a single motion scatters by less."""
 
-JUMP = 0.3  # largest relative difference between the radii of a motion and those of its extrapolated branch
+JUMP = 0.3  # largest relative difference between the radii of a motion and of its extrapolated branch
 
 
 class Motion(NamedTuple):

@@ -45,7 +45,7 @@ def _as_it_is(kind: Any, argument: Any, context: Any) -> Any:
 def result_of_python(
     typing: Any, objects: Any, which: Any, places: Any, a: Any, b: Any, c: Any, d: Any
 ) -> Any:
-    """Return the result of a function, one of ``objects``, of those of four numbers whose bits are set in ``places``.
+    """Call a function, one of ``objects``, with the subset of four numbers whose bits are set in ``places``.
 
     It is NaN for anything but a number. Errors are passed on.
     """

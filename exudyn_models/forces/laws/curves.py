@@ -11,7 +11,7 @@ from exudyn_models.forces.laws.calls import number_at
 from reference_model.systems import FloatArray, finite_numbers
 
 ROUNDING = 0.01
-"""Rounding of the edge of ``peak_over_sliding``, which limits its slope to 50 times that of a linear fall."""
+"""Rounding of the edge of ``peak_over_sliding``, which limits its slope to 50 times the slope of a linear fall."""
 
 COLUMNS = 3
 """Columns of ``curve_of_table``: slip speed and coefficient at the start of a piece, and its slope."""

@@ -83,7 +83,8 @@ def friction_force_slopes(
 ) -> tuple[float, float, float]:
     """Return ∂(μN)/∂(radius, slip speed, relative spin) in N/m, N s/m and N s, by central differences.
 
-    ``rim`` is the largest radius of the contact in m. The other arguments are those of ``friction_force_under``.
+    ``rim`` is the largest radius of the contact in m. The other arguments are the same as in
+    ``friction_force_under``.
     """
     motion, slowest = (radius, slip_speed, relative_spin), max(epsilon, SLOWEST)
     slowest_spin = slowest / rim if rim > 0.0 else 1.0

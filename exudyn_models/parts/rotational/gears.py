@@ -69,9 +69,9 @@ def add_planetary(
 ) -> RotorCoupling:
     """Add a planetary gear, (1 + ratio)·ω_carrier = ω_sun + ratio·ω_ring; return its handle.
 
-    ``ratio`` > 0 is the number of teeth of the ring divided by that of the sun, and ``efficiency`` that of the gear
-    with a fixed carrier, as in ``add_gear``. Two of them make a Ravigneaux gear: give the second, whose ``ratio`` is
-    then negative, the same carrier and ring.
+    ``ratio`` > 0 is the number of teeth of the ring divided by the number of the sun. ``efficiency`` refers to the
+    gear with a fixed carrier, as in ``add_gear``. Two of them make a Ravigneaux gear: give the second, whose
+    ``ratio`` is then negative, the same carrier and ring.
     """
     return add_gear(
         mbs, sun, ring, ratio=-finite_number("ratio", ratio), efficiency=efficiency, carrier=carrier

@@ -10,7 +10,7 @@ def add_one_way_clutch(mbs: Any, driver: Any, driven: Any) -> RotorCoupling:
     """Add a one-way clutch to a model; return its handle.
 
     The ``driven`` rotor may be faster than the ``driver``, but never slower: the clutch then locks, with any positive
-    moment on the driven rotor. If it is slower at the start, an impact equalises both speeds. Rotors are those of
+    moment on the driven rotor. If it is slower at the start, an impact equalises both speeds. Rotors as in
     ``add_gear``; None is the ground.
     """
     nodes = list(rotors_of(mbs, driver=driver, driven=driven).values())

@@ -145,7 +145,7 @@ def linearise(mbs: Any) -> Linearisation:
 
     Constraint forces count with the turn of their directions (a pendulum has the stiffness of its weight). Loads of
     user functions count as constant, and so do the directions of constraints that the present velocities turn.
-    First-order coordinates, such as those of heat and work, do not count. The model is assembled if necessary, and
+    First-order coordinates, such as heat and work, do not count. The model is assembled if necessary, and
     its state stays unchanged.
 
     Parameters

@@ -46,7 +46,7 @@ class LoadedRows:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the forces, shape (k,), and the slip accelerations that they leave.
 
-        ``limits``, shape (k, 2), are those of rows without a mesh against slip forward and backward.
+        ``limits``, shape (k, 2), limit the forces of rows without a mesh against slip forward and backward.
         """
         states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
         meshes = any(law is not None for law in self.laws)

@@ -31,7 +31,7 @@ ABOVE = 10.0
 """Ratio of the limit of a one-way clutch in its locked direction to the largest moment in the model."""
 
 ITERATIONS = 100
-"""Largest number of iterations for directions of power; each changes that of at least one mesh."""
+"""Largest number of iterations for directions of power; each changes the direction of at least one mesh."""
 
 SETTLED = 1e-13
 """Largest relative change of settled shares."""

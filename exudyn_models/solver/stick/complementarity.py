@@ -17,7 +17,7 @@ from exudyn_models.solver.rows.active_set import LoadedRows, unloaded
 from reference_model.systems import FloatArray
 
 SLIPS = 1e-8
-"""Smallest slip acceleration, relative to that of friction alone; less is a rounding error."""
+"""Smallest slip acceleration, relative to the acceleration by friction alone; less is a rounding error."""
 
 DEPENDENT = 1e-9
 """Part of a gradient of slip, relative to its length in the metric of the mass, that other contacts do not hold."""

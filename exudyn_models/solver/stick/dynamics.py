@@ -115,7 +115,7 @@ class Dynamics:
         return self.inverse[: self._size, self._size :] @ -slips
 
     def _coordinate_rates(self) -> FloatArray:
-        """Return the derivatives of the coordinates; those of rotation vectors are not the velocities."""
+        """Return the derivatives of the coordinates, which differ from the velocities for rotation vectors."""
         q, rates = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
         for places, reference in self._rotations:
             rates[places] = rate_of_rotation_vector(q[places] + reference, rates[places])

@@ -26,8 +26,8 @@ class Group:
     """Contacts at rest that share a load.
 
     The first of their rows are constraints with forces at ``places``; ``blocks`` are the rows of each contact, and
-    ``by_chosen`` relates the slips of the other rows to those of the first. Forces along the rows change the moments
-    of meshes by ``to_loads``, shape (m, k).
+    ``by_chosen`` relates the slips of the other rows to the slips of the first rows. Forces along the rows change the
+    moments of meshes by ``to_loads``, shape (m, k).
     """
 
     mbs: Any
@@ -108,7 +108,7 @@ class Resting:
     ) -> None:
         """Choose the rows of the contacts ``resting`` that become constraints, and find those that share loads.
 
-        ``places`` are those of the forces of all constraints, and rows ``before`` are preferred. Forces along all
+        ``places`` locate the forces of all constraints, and rows ``before`` are preferred. Forces along all
         rows change the moments of meshes by ``to_loads``, shape (m, k).
         """
         own_rows = [range(len(slips.rows))[slips.sets.blocks[i]] for i in resting]

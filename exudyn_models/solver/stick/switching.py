@@ -30,7 +30,7 @@ SOON = 1e-5
 """Largest difference between the roots of a line and a parabola, as a share of a step; the second is closer."""
 
 SMALL = 1e-3
-"""Largest margin near a change, relative to those of the step; margins that jump are larger."""
+"""Largest margin near a change, relative to the margins of the step; margins that jump are larger."""
 
 SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
 """Solver of all steps; constraint forces of GeneralizedAlpha contain errors of positions over the squared step."""

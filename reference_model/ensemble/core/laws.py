@@ -38,7 +38,7 @@ class PinLaw(NamedTuple):
 
 
 class DiscLaw(NamedTuple):
-    """Constants of a disc, scaled so that motion is of order one; seven are those of a pin.
+    """Constants of a disc, scaled so that motion is of order one; a pin has seven of them.
 
     ``around`` contains (cos, sin) of the direction of each contact point in sequence; () for the ring. ``leverage``
     is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.

@@ -97,8 +97,8 @@ def require_whirl(pin: PinOnDisc) -> None:
 def variational_matrix(pin: PinOnDisc) -> FloatArray:
     """Return the matrix of (12), shape (3, 3): its product with (ξ, ξ̇, η) is the time derivative of (ξ, ξ̇, η).
 
-    ξ is the deviation of the radius in m, and η that of the angular velocity in the sense of ω, in rad/s. Raises
-    ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
+    ξ is the deviation of the radius in m, and η the deviation of the angular velocity in the sense of ω, in rad/s.
+    Raises ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
     """
     require_positive(pin, "damping", "friction_force")
     rate, k = pin.damping / pin.mass, pin.natural_frequency

@@ -47,7 +47,7 @@ STICKING_RATIOS, STICKING_TIME = (0.98, 1.02, 1.05), 80.0
 """μN as a multiple of the largest μN with an equilibrium, and time (s) until a disc gains the last 5 % of ω."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
-"""X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
+"""X0 in m, which the paper omits; 0.1 m is the value of Figs. 4 to 6."""
 
 TOLERANCE = WORKING / 10  # for motions to rest, because the claims resolve 1e-9
 BALANCED = 1e-9  # largest residual force due to rounding, as a share of μN; (26) as printed leaves far more

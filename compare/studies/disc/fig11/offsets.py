@@ -22,7 +22,7 @@ ROUND = np.linspace(0.0, 300.0, 3001)  # times in s, longer than a period of the
 OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
-"""X0 in m of the long simulations; the last is that of the other figures."""
+"""X0 in m of the long simulations; the last value belongs to the other figures."""
 
 ENDS_UNTIL, LOOKED_AT, ENDS_TOLERANCE = 720.0, 240.0, 1e-4
 """Duration in s, its evaluated end in s, a period of the modulation, and tolerance."""

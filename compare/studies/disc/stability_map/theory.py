@@ -54,7 +54,7 @@ def critical_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
 
-    The error includes that of the state, because friction's slopes depend on small differences of U and W.
+    The error includes the error of the state, because friction's slopes depend on small differences of U and W.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))

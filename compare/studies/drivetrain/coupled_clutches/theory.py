@@ -39,7 +39,7 @@ EPSILONS, TOLERANCE = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0]), 1e-9
 """Explicit steps: ε in m/s, which equals rad/s at the radius of 1 m, and a tolerance of a millionth of its effect."""
 
 STEPS, SMALL_EPSILON = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0]), 1e-5
-"""Implicit steps in s, and their ε in m/s, whose effect is at most a tenth of that of the shortest step."""
+"""Implicit steps in s, and their ε in m/s, whose effect is at most a tenth of the effect of the shortest step."""
 
 ALL_SLIP_UNTIL, LETS_GO_FROM = 0.7, 0.82
 """Times in s: all closed clutches slip until the first, one of ``SHOWN``; the first release is after the second."""

@@ -170,7 +170,7 @@ def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
 
 
 def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
-    """Return six eigenvalues (1/s), slowest decay first, without those of free phase and free speed of the car."""
+    """Return six eigenvalues (1/s), slowest decay first, without the two of the free phase and of the car's speed."""
     values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
     values = values[np.argsort(np.abs(values))[2:]]
     return np.asarray(values[np.lexsort((-values.imag, -values.real))])

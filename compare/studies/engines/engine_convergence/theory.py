@@ -23,7 +23,7 @@ SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
 """Times in s, multiples of every step, so the samples are not interpolated."""
 
 STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
-"""Starts like those of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
+"""Starts like the starts of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
 
 STICKING_UNTIL = 8.0
 """Duration in s."""

@@ -208,7 +208,7 @@ def stick_times(run: Trajectory) -> FloatArray:
 
 
 def as_many(found: FloatArray, as_in: FloatArray) -> FloatArray:
-    """Return ``found``, or NaN if its shape differs from that of ``as_in``."""
+    """Return ``found``, or NaN if its shape differs from the shape of ``as_in``."""
     return found if found.shape == as_in.shape else np.full(as_in.shape, math.nan)
 
 

@@ -95,7 +95,7 @@ def _packed(context: Any, builder: Any, signature: Any, values: list[Any]) -> An
 def step(
     rates: Callable[[Tuple, Constants], Tuple], law: Constants, y: Tuple, k1: Tuple, h: float
 ) -> tuple[Tuple, Tuple, Tuple]:
-    """Return the mean rates over a step of ``h`` from ``y``, and their differences from those of lower order.
+    """Return the mean rates over a step of ``h`` from ``y``, and their differences from the rates of lower order.
 
     ``rates(y, law)`` returns the rates of ``y``, perhaps followed by other numbers. ``k1`` are the rates at ``y``.
     """
