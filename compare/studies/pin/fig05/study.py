@@ -191,8 +191,7 @@ def whirls(engine: Engine) -> Measured:
         return np.asarray(states[1:-1, :2].mean(axis=0))
 
     found = refined(mean, RUNS_TOLERANCE)
-        _, multiplier = sorted(map(abs, orbit.multipliers))[-1:-3:-1]  # the first multiplier belongs to the phase
-
+    multiplier = sorted(map(abs, orbit.multipliers))[-2]  # the largest except the multiplier of the phase
     # The remaining transient follows from the largest possible deviation at the end of stick.
     left = float(np.max(np.abs(orbit.state))) * multiplier ** ((UNTIL - 60.0) / orbit.period + FURTHER_TURNS)
     return compared(
