@@ -155,7 +155,7 @@ def with_options(
 
 
 def changed(system: System, settings: Sequence[str]) -> System:
-    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid one."""
+    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid change."""
     given = changes_of(settings, [field.name for field in fields(system)])
     changes: dict[str, Any] = {
         name: None if name == "contact_points" and text.strip().lower() == "none" else _number(name, text)

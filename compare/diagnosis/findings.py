@@ -71,7 +71,7 @@ class History:
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces divided by the exact ones, and their errors; NaN where there is none.
+    """Forces divided by the exact forces, and their errors; NaN for a missing force.
 
     They refer to ``probes.SUPPORTS`` or ``NONLINEAR``, shape (n,), to force and moment on discs, shape (n, 2), or
     friction far from the axis, shape (1,).

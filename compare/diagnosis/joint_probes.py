@@ -106,7 +106,7 @@ SUPPORTS = {
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of speed due to each of ``SUPPORTS``, divided by the exact one, shape (n,)."""
+    """Return the change of speed due to each of ``SUPPORTS``, divided by the exact change, shape (n,)."""
     times = np.array([0.0, SETTLES_FOR, SETTLES_FOR + SLIDES_FOR])
     motions = [(joint, start, times) for joint, start in SUPPORTS.values()]
     found = []
@@ -202,10 +202,11 @@ SLOW = 1e-5
 
 
 def stops(engine: Engine, tolerance: float) -> FloatArray:
-    """Return angle in rad and time in s of a stop, each divided by the exact one; the lowest and the last speed.
+    """Return the angle and the time of a stop, divided by the exact values, and the lowest and the last speed.
 
-    The speeds are in units of the initial speed. The fifth number is the angle of rest on a spring in units of F/C,
-    and the last one the largest speed, divided by the initial one, of a joint that should stop within a step.
+    The speeds are in units of the initial speed. The fifth number is the angle of rest on a spring in units of F/C.
+    The last number belongs to a joint that should stop within a step: its largest speed, divided by its initial
+    speed.
     """
     near = np.linspace(0.9, 1.1, 41)
     turn = math.pi * math.sqrt(SPRUNG.inertia / SPRUNG.stiffness)

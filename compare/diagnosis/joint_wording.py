@@ -47,7 +47,7 @@ UNITS = ("kg m²", "N m", "rad/s", "rad", "rad/s")
 
 
 class _Number(NamedTuple):
-    """A value at the finest rung, its error, and whether it differs from the right one."""
+    """A value at the finest rung, its error, and whether it differs from the right value."""
 
     value: float
     error: float
@@ -275,7 +275,7 @@ def _of_stops(joint: Joint, refined: str, ratio: float, noise: float) -> Iterato
 
 
 def _of_motions(joint: Joint) -> Iterator[Remark]:
-    """Yield whether whole motions converge to the exact ones."""
+    """Yield whether whole motions converge to the exact motions."""
     sizes = np.max(np.abs(joint.errors), axis=1)
     estimate = SAFETY * float(np.max(np.abs(np.diff(joint.errors[-3:], axis=0))))
     if sizes[-1] > max(estimate, NEGLIGIBLE) and sizes[-1] > 0.5 * sizes[0]:

@@ -265,7 +265,7 @@ RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
 def second_release(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the distance after the second release, divided by the exact one, and the delay."""
+    """Return the distance after the second release, divided by the exact distance, and the delay."""
     stretch = FRICTION / SWING.stiffness
     turned, quarter = math.pi / RATE, 0.5 * math.pi / RATE
     start = ((SECOND_PULL + 2.0) * stretch, 0.0, 0.0, 0.0)
@@ -391,7 +391,7 @@ def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], Float
 
 
 def moments(engine: Engine, points: int | None, tolerance: float) -> FloatArray:
-    """Return the ratios of force and moment of friction to the exact ones, shape (6, 2); NaN for none."""
+    """Return force and moment of friction divided by the exact values, shape (6, 2); NaN for missing values."""
     motions, found = discs(points), []
     settled = _settled(engine, motions, tolerance, 1e-12)
     for (_, start, _), (begun, ended, exact) in zip(motions, settled, strict=True):

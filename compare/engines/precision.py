@@ -62,7 +62,7 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
     """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
     Opposite signs at the two tolerances of an estimate reveal odd effects of the noise, different amplitudes even
-    ones. Independent noise could be equal by chance.
+    effects. Independent noise could be equal by chance.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision

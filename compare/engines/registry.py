@@ -171,7 +171,7 @@ def packaged() -> dict[str, str]:
 
 
 def imported(name: str, place: str) -> Engine:
-    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` without one.
+    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if it is missing.
 
     By default it simulates the pin only, without reporting phases. The attributes ``DECLARED`` of the function
     override parameters of ``Engine``.

@@ -76,7 +76,7 @@ def check_writable(path: Path) -> None:
 
 
 def read_file(path: Path, most: int = LARGEST) -> bytes:
-    """Return the contents of a regular file; raise ``OSError`` for another one, or for more than ``most`` bytes."""
+    """Return the contents of a regular file of up to ``most`` bytes; raise ``OSError`` for any other file."""
 
     def opened(name: str, flags: int) -> int:  # opening a pipe would wait for a writer
         return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))

@@ -66,7 +66,7 @@ class Cell:
     """One engine's answer to one claim: the worst state of usually one claim.
 
     ``reason`` says why a verdict is missing; ``evidence`` is the kind of evidence, "" without a verdict.
-    ``implied_by`` is the claim, or the engine with the same claim, whose verdict implies this one.
+    ``implied_by`` is the claim, or the engine with the same claim, whose verdict implies the present verdict.
     """
 
     state: State

@@ -130,7 +130,7 @@ def _numerical(claim: Claim) -> FloatArray:
 
 
 def deciding(claims: Sequence[Claim]) -> Claim:
-    """Return the claim nearest to failing, or the least certain one, of claims with the same verdict."""
+    """Return the claim nearest to failing, or the least certain claim, among claims with the same verdict."""
 
     def weight(claim: Claim) -> float:
         element = worst(claim)

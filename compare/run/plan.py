@@ -39,7 +39,8 @@ class Planned:
 class _Recorder:
     """The ``simulate`` of an engine that records its questions; its answers are exact, or wrong by ``OFF_BY``.
 
-    No two instances are equal, so a study never reuses results of another one. ``known`` contains the exact motions.
+    No two instances are equal, so a study never reuses results of another engine. ``known`` contains the exact
+    motions.
     """
 
     known: dict[bytes, Trajectory]

@@ -47,7 +47,7 @@ class Run:
     interrupted: bool = False
 
     def columns(self, study: Study) -> tuple[str, ...]:
-        """Return the columns of ``study``: "theory" if it has one, and the engines that take part."""
+        """Return the columns of ``study``: "theory" if some claims need no engine, and the engines that take part."""
         theory = (THEORY,) if study.has_theory else ()
         return theory + tuple(name for name in self.engines if self._takes_part(name, study))
 

@@ -105,9 +105,9 @@ class Workers:
         owner: str = "",
         limit: float | None = None,
     ) -> None:
-        """Append ``function(*arguments)`` to the queue, or prepend it if ``first``; ``limit`` replaces the usual one.
+        """Queue ``function(*arguments)``, at the front if ``first``; ``limit`` replaces the usual limit.
 
-        A process that has worked for an ``owner`` never works for another one, because a foreign engine may have
+        A process that has worked for an ``owner`` never works for another owner, because a foreign engine may have
         changed its modules.
         """
         work = _Work(key, function, arguments, owner, self.limit if limit is None else limit)

@@ -32,7 +32,7 @@ class Grid:
         self.ends.flat[numbers], self.simulated.flat[numbers] = np.asarray(ends), True
 
     def lines(self, stride: int) -> Lines:
-        """Return every ``stride``-th line of the grid, and the last one."""
+        """Return every ``stride``-th line of the grid, and the last line."""
         y, x = (np.union1d(np.arange(0, points, stride), points - 1) for points in self.ends.shape)
         return y, x
 

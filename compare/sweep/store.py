@@ -152,7 +152,7 @@ class SweepStore:
         return Round(group, numbers, self.chunk)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
-        """Return round ``i`` of the trajectories ``numbers``, or None without an intact one."""
+        """Return round ``i`` of the trajectories ``numbers``, or None without an intact round."""
         group = self._group(ROUND.format(i))
         if not self._is_intact(group, f"the description of {group.name}"):
             return None
@@ -167,7 +167,7 @@ class SweepStore:
             self.broken.append(f"{ROUND.format(i)}: {word} {shown}{more} (of {count})")
 
     def put(self, name: str, dataset: xr.Dataset) -> None:
-        """Write a group and replace an older one."""
+        """Write a group and replace an older group."""
         self.end(self.begin(name, {}), dataset)
 
     def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
@@ -191,7 +191,7 @@ class SweepStore:
         return group.dataset() if self._is_intact(group, name) else None
 
     def finished(self, name: str) -> xr.Dataset:
-        """Return an intact group; raise ``ValueError`` without one."""
+        """Return an intact group; raise ``ValueError`` if the group is missing or damaged."""
         group = self.get(name)
         if group is None:
             raise ValueError(

@@ -292,7 +292,7 @@ def _derivatives_of_points(
 def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
-    """Return P, its gradient in (u_x, u_y, φ̇ − ω, φ), and the held point or, without one, the slowest."""
+    """Return P, its gradient in (u_x, u_y, φ̇ − ω, φ), and the held point, or the slowest point if none is held."""
     _, points, _, _, held, table = contact
     mean, lowest, slow = 0.0, math.inf, held
     by_mean = np.zeros(4)

@@ -136,7 +136,7 @@ def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
     """Return whether friction can hold a creeping system, according to all steps with slip.
 
     A load that friction cannot hold lets the slip pass through zero, and then its direction relative to the slip
-    reverses. It counts in both directions.
+    reverses. The limit applies in both directions.
     """
     moving = ratio > 0.0
     if not np.any(moving):

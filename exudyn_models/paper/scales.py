@@ -1,4 +1,4 @@
-"""Units that make a motion of order one, and its scales, which determine the steps and tolerances of a run.
+"""Units in which a motion is of order 1, and the scales that determine the steps and tolerances of a run.
 
 Tolerances therefore do not depend on SI units. The scales are in the units of ``system`` and ``state``.
 """

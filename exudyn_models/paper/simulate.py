@@ -39,7 +39,7 @@ REGULARISATION_PER_TOLERANCE = 100.0
 """Ratio of ε, in the motion's own unit of speed, to the tolerance (study in ``benchmarks/exudyn_contact.py``)."""
 
 STEP_TOLERANCE = 1e-2
-"""Ratio of DOPRI5's tolerance to the requested one, because errors of thousands of steps accumulate."""
+"""Ratio of DOPRI5's tolerance to the requested tolerance, because errors of thousands of steps accumulate."""
 
 DISC_STEP_TOLERANCE = 1e-3
 """The same for a disc: at U = W the ring's friction has an infinite slope, and the spin keeps the error."""
@@ -147,10 +147,10 @@ def simulate_fixed_step(
 
 @dataclass(frozen=True)
 class Run:
-    """A motion to compute from time 0 on, in units that make it of order one.
+    """A motion to compute from time 0 on, in units in which it is of order 1.
 
-    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. ``tolerance`` is nan for
-    fixed steps; ``began`` is the start by ``time.perf_counter``.
+    Exudyn does not allow negative times, loses digits at large times, and has absolute tolerances. ``tolerance`` is
+    nan for fixed steps; ``began`` is the start by ``time.perf_counter``.
     """
 
     given: tuple[System, FloatArray, FloatArray]

@@ -75,7 +75,7 @@ class RingFriction:
         friction_coefficient: Coefficient | None = None,
         normal_load: NumberOrFunction | None = None,
     ) -> None:
-        """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present one.
+        """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present value.
 
         Raises ``ValueError`` if a number is out of range; both then stay unchanged.
         """

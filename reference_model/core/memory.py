@@ -17,10 +17,10 @@ SLIPS, STICKS, PIVOTS = 1.0, 2.0, 3.0
 ) = range(20)  # fmt: skip
 """Indices into the memory of a run, which continues from it in the next call.
 
-It contains the next explicit step, the time of the last one, the number of recent short steps and the number that
-calls for collocation, the signs of the surfaces, the contact point that the slip belongs to, the sense of a pivot,
-the kind of the current phase, whether slip decays forever, the numbers of steps and evaluations, the work in explicit
-steps, the numbers of recorded times and phases, and whether the run continues.
+The memory contains the next explicit step, the time of the last step, the number of recent short steps and the number
+that calls for collocation, the signs of the surfaces, the contact point that the slip belongs to, the sense of a
+pivot, the kind of the current phase, whether slip decays forever, the numbers of steps and evaluations, the work in
+explicit steps, the numbers of recorded times and phases, and whether the run continues.
 """
 
 RUNS, ENDS, FAILS, FULL = 0.0, 1.0, 2.0, 3.0

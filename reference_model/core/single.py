@@ -56,10 +56,11 @@ FIRST_STEP, FEW = 0.01, 15.0
 """First explicit step in stretched time, and number of short steps before collocation is tried."""
 
 MOST_WORK = 20_000.0
-"""Work of a call in explicit steps. It takes less than a second, then Python can handle an interruption."""
+"""Work of a call in explicit steps. A call takes less than a second, so Python can handle an interruption after
+it."""
 
 THINNEST = 1e-3
-"""Smallest width of an annulus over its radius: a difference of two discs loses digits in a thinner one."""
+"""Smallest width of an annulus over its radius; in a thinner annulus, the difference of two discs loses digits."""
 
 KINDS: dict[int, Kind] = {1: "slip", 2: "stick", 3: "pivot"}
 """Names of the kinds of phases."""

@@ -40,7 +40,7 @@ BRIEF = 1e-5
 """Longest slip from rest in closed form; its relative error is of this order."""
 
 COST = 4.0
-"""Work of a step of collocation relative to an explicit one, where it replaces several."""
+"""Work of a step of collocation in explicit steps, where it replaces several explicit steps."""
 
 WORK_OF_STEP = 50.0
 """Its work in explicit steps, for the length of a call."""
@@ -72,7 +72,7 @@ def six(y: Unknowns) -> FloatArray:
 
 @part
 def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
-    """Return the extrapolation of a step of length ``before`` to the nodes of the next one, shape (NODES, 6)."""
+    """Return the extrapolation of a step of length ``before`` to the nodes of the next step, shape (NODES, 6)."""
     guess = np.empty((NODES, 6))
     for i in range(NODES):
         guess[i] = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)

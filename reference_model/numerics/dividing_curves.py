@@ -1,6 +1,6 @@
 """Curves in a rectangle where a function of two variables changes sign.
 
-A grid locates them. Then the next point of each curve is the zero on an arc ahead of the last one. So the function
+A grid locates them. Then the next point of each curve is the zero on an arc ahead of the last point. So the function
 may be constant away from its zeros: the error of contourpy is then 1e-2 of the rectangle with 66,000 values, and here
 5e-13 with 3,400.
 """

@@ -113,7 +113,7 @@ def turning_frame_jacobian(
     The unknowns are position in m and absolute velocity in m/s, in components along the turning axes, and the spin of
     a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v. ``state`` of a
     disc lies on the whirl, with the centre on the x axis. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a
-    pin has no whirl or the state cannot lie on one.
+    pin has no whirl or the state cannot lie on a whirl.
     """
     state = _state_on_whirl(system, state)
     jacobian = jacobian_without_angle(system, state, contact)

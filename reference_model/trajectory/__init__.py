@@ -159,7 +159,7 @@ class Trajectory:
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the path in the plane and radius, slip speed and spin over time; stick phases are shaded.
 
-        ``figure`` is the matplotlib figure, None for a new one. Raises ``ModuleNotFoundError`` without matplotlib.
+        ``figure`` is the matplotlib figure, None for a new figure. Raises ``ModuleNotFoundError`` without matplotlib.
         """
         from reference_model.trajectory.pictures import figure_of
 

@@ -34,7 +34,7 @@ class Patch:
 
     ``motions`` contains slip speed and rim speed in m/s, and the angle, at the last three ``TIMES``, shape
     (k, 8, 3, 3). ``wrenches`` contains the mean force against the slip over μN and the moment over μNR, shape
-    (k, 8, 2). ``shaft`` is the angular acceleration by the shaft over the exact one.
+    (k, 8, 2). ``shaft`` is the angular acceleration by the shaft, divided by the exact acceleration.
     """
 
     kinds: tuple[str, ...]

@@ -1,7 +1,7 @@
 """Bullet as an engine: with its friction cone on and off, and with our law as a user force.
 
 Written for PyBullet 3.2.7, in double precision. The pin or disc is a multibody on two prismatic joints; a disc also
-has a revolute one. The plate is too heavy to be slowed.
+has a revolute joint. The plate is too heavy to be slowed.
 
 - Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. As shipped,
   only the motors are off.

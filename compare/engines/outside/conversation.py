@@ -75,7 +75,7 @@ def simulate(
 
 
 def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
-    """Return the program's greeting; raise ``ValueError`` without one."""
+    """Return the program's greeting; raise ``ValueError`` if it is missing."""
     check_command(command, folder)
     try:
         return conversation_with(command, folder).greeting
@@ -188,7 +188,7 @@ class Conversation:
                 self._process.kill()
 
     def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
-        """Write ``line`` and return the next line; end the program unless it writes exactly one."""
+        """Write ``line`` and return the next line; end the program unless it writes exactly one line."""
         here, late = threading.Event(), threading.Event()
         began, before = time.monotonic(), processor_time_of(self._process.pid)
 
@@ -285,7 +285,7 @@ class _LastWords:
         self._reader.start()
 
     def text(self, *, ended: bool) -> str:
-        """Return the last lines as one; if the program has ``ended``, wait for the rest."""
+        """Return the last lines as one line; if the program has ``ended``, wait for the rest."""
         if ended:
             self._reader.join(FAREWELL)  # other processes may hold the stream open
         lines = self._kept.decode(errors="replace").split("\n")

@@ -199,7 +199,7 @@ def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 @functools.cache
 def _times(motion: Motion) -> FloatArray:
-    """Return an odd number of times (s), so every second sample includes the last one."""
+    """Return an odd number of times (s), so every second sample includes the last sample."""
     evenly = np.linspace(0.0, motion.until, 2 * round(motion.until / (2.0 * motion.step)) + 1)
     rough = simulate(motion.system, motion.start, evenly[[0, -1]], tolerance=ROUGH)
     near = motion.step * CLOSER ** np.arange(NUMBER)

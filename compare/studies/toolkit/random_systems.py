@@ -1,6 +1,6 @@
 """Random pins, discs and initial states.
 
-Sizes, rates and ratios have log-uniform distributions; signs and directions have uniform ones.
+Sizes, rates and ratios have log-uniform distributions; signs and directions have uniform distributions.
 """
 
 import cmath

@@ -1,7 +1,8 @@
 """Exact motion of rotors that clutches with Coulomb friction couple, in a row or in any other way.
 
 Torques and capacities are piecewise harmonic, so the motion between events has a closed form. After the end of a
-slip, or a torque beyond a clutch's capacity, a search over all combinations of modes finds the consistent one.
+slip, or a torque beyond a clutch's capacity, a search over all combinations of modes finds the consistent
+combination.
 """
 
 from __future__ import annotations

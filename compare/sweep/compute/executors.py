@@ -100,7 +100,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             self._client.close()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results as they become available; another worker repeats tasks of a lost one."""
+        """Yield keys and results as they become available; another worker repeats tasks of a lost worker."""
         sent: dict[str, tuple[Task, float]] = {}
         waiting, longest = iter(tasks), 0.0
         running = self._dask.as_completed(with_results=True, loop=self._client.loop)

@@ -35,7 +35,7 @@ def peak_over_sliding(share: float, static_ratio: float) -> float:
 def curve_of_table(name: str, table: Any) -> FloatArray:
     """Return the pieces of a coefficient curve, shape (n, ``COLUMNS``), from rows of slip speed and coefficient.
 
-    The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
+    The coefficient is linear between the rows and beyond the last row, like Modelica's ``mu_pos``, but not below 0.
     Raises ``ValueError`` if the table is invalid.
     """
     speeds, values = _checked_table(name, table)

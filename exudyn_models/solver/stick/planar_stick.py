@@ -219,7 +219,7 @@ class PlanarStick(AxialStick):
     ) -> list[float]:
         """Return the slip that the constraint ``lock`` keeps at zero (its user function).
 
-        Unlike a connector's, its coordinates ``q`` contain the reference values.
+        Its coordinates ``q`` contain the reference values, unlike the coordinates of a connector.
         """
         return [float(self._row(lock, q) @ q_t)]
 

@@ -61,7 +61,7 @@ class PointsOnAxis(PlanarStick):
 
 @dataclass(eq=False, kw_only=True)
 class PointSticks(AxialStick):
-    """Friction at ``points`` that stick exactly, one by one, or as a ``whole`` if joints allow only spin."""
+    """Friction at ``points`` that stick exactly and individually, or as a ``whole`` if joints allow only spin."""
 
     whole: PointsOnAxis
     points: tuple[PlanarStick, ...]

@@ -320,7 +320,7 @@ def _roots(points: Sequence[_Point], ended: NDArray[Any]) -> NDArray[Any]:
 
 
 class _SensorRows:
-    """Switches the rows of sensors on for the steps that need one; each part of a run would restart the period."""
+    """Switches sensors on only for steps that need a row, because each part of a run would restart the period."""
 
     def __init__(self, settings: Any, start: float, step: float) -> None:
         self._settings, self._next, self._step = settings, start, step
@@ -332,7 +332,7 @@ class _SensorRows:
         self._settings.active = self._wanted and on
 
     def is_due(self, t: float) -> bool:
-        """Return whether a row is due at the time t (s); if so, advance to the next one."""
+        """Return whether a row is due at the time t (s); if so, advance to the next row."""
         if t < self._next - ON_GRID * self._step:
             return False
         period = max(self._period, self._step)

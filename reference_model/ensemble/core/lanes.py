@@ -46,7 +46,8 @@ class Memory(Record):
     """Scalar data of a lane.
 
     ``length`` and ``rate`` are the unit of length in m and the inverse unit of time in 1/s, ``tick`` is the time
-    between checks. The next step by the core lasts ``span``; it has the ``patience`` for short steps of the last one.
+    between checks. The next step by the core lasts ``span`` and tolerates as many short steps as the last
+    (``patience``).
     """
 
     number: int

@@ -120,7 +120,7 @@ MOST_STRIDES = 20_000
 """Largest number of steps in a turn; more are needed only if slip almost ends."""
 
 COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0))
-"""How far the rates of each stage carry the next one, and their weight in the step."""
+"""Weights of the rates of each stage in the next stage and in the step."""
 
 
 @written_out
@@ -130,7 +130,8 @@ def orbit_attracts(
     """Return whether an orbit attracts and is near, given position z and velocity v of a pin where x is largest.
 
     ``came`` is the change of x, y and ẏ since the previous crossing. With the derivative M of the return map the
-    orbit is (1 − M)⁻¹ times ``came`` away from the previous crossing, and must be within ``near`` of this one.
+    orbit is (1 − M)⁻¹ times ``came`` away from the previous crossing, and must be within ``near`` of the present
+    crossing.
     """
     derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
     if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):

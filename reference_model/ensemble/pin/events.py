@@ -1,6 +1,6 @@
 """Rare events of a pin: rest and release, crossings of the section, and end states.
 
-Functions that return a bool return whether the trajectory ends, if not stated otherwise.
+Functions that return a bool return whether the trajectory ends, unless stated otherwise.
 """
 
 import math

@@ -163,7 +163,7 @@ def modulations(states: FloatArray) -> FloatArray:
 
 
 def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the last row of :func:`modulations` and its change from the previous one; NaN without two rows."""
+    """Return the last row of :func:`modulations` and its change from the previous row; NaN without two rows."""
     found = modulations(states)
     if len(found) < 2:
         return np.full(6, np.nan), np.full(6, np.nan)

@@ -61,7 +61,7 @@ TIME, DEVIATION, TOLERANCE = 0.4, 3e-3, 20 * WORKING
 
 PUSH, UNTIL, CYCLE_SAMPLE, ROUGHER = 0.2, 6.0, 2e-3, 80.0
 """Modulated motion: initial deviation as a share of the radius, end and sampling interval in s, and tolerance as a
-multiple of the usual one.
+multiple of the usual tolerance.
 """
 
 SPEEDS, TORQUES = np.linspace(2900.0, 6500.0, 32), np.geomspace(0.2, 60.0, 32)

@@ -128,7 +128,7 @@ def of_sliding(run: Simulate, **how: Any) -> float:
 
 
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
-    """Return the errors of the events, NaN if their number differs from the exact one."""
+    """Return the errors of the events, NaN if their number is wrong."""
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
 
 

@@ -1,6 +1,6 @@
 """Given motions, ranges of random motions, and integrals over panels of time.
 
-The paper's m, J and C are all one, so an engine may confuse them. Here no two parameters are equal, and random
+The paper's m, J and C are all 1, so an engine may confuse them. Here no two parameters are equal, and random
 motions cover the whole range.
 """
 

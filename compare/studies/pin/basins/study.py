@@ -146,7 +146,7 @@ def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
 
 
 def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
-    """Return x0 and vx0 of the random starts, shape (starts, 2), and the generator for further ones."""
+    """Return x0 and vx0 of the random starts, shape (starts, 2), and the generator for further starts."""
     random = np.random.default_rng(SEED)
     return np.column_stack([random.uniform(low, high, starts) for low, high in PLANE]), random
 
