@@ -87,7 +87,7 @@ def solve_in_turns(
     For a creeping part (the whole contact or one of several points) the model extends the viscous part of the law
     without limit, so the law's kink cannot disturb Newton's method. The creep ends between two steps.
 
-    All numbers are in units in which the motion is of order 1; messages need the unit of time, ``seconds``, in s.
+    All numbers are scaled so that the motion is of order 1; messages need the unit of time, ``seconds``, in s.
     """
     motion = _Turns(
         contact, solver, friction, Recording(contact, times), StepCount(float(times[-1]), seconds=seconds)

@@ -1,4 +1,4 @@
-"""Units in which a motion is of order 1, and the scales that determine the steps and tolerances of a run.
+"""Units that make a motion of order 1, and the scales that determine the steps and tolerances of a run.
 
 Tolerances therefore do not depend on SI units. The scales are in the units of ``system`` and ``state``.
 """

@@ -147,7 +147,7 @@ def simulate_fixed_step(
 
 @dataclass(frozen=True)
 class Run:
-    """A motion to compute from time 0 on, in units in which it is of order 1.
+    """A motion to compute from time 0 on, in units that make it of order 1.
 
     Exudyn does not allow negative times, loses digits at large times, and has absolute tolerances. ``tolerance`` is
     nan for fixed steps; ``began`` is the start by ``time.perf_counter``.

@@ -1,4 +1,4 @@
-"""Units in which a motion is of order 1, and unknowns in these units relative to the master disc."""
+"""Units that make a motion of order 1, and unknowns in these units relative to the master disc."""
 
 from __future__ import annotations
 
