@@ -38,7 +38,7 @@ class HeadersMissingError(ValueError):
 
 @dataclass(frozen=True)
 class Exported:
-    """A unit in ``file``, with a library for ``platform``; if that is "", ``remark`` says why."""
+    """A unit in ``file``, with a library for ``platform``; if ``platform`` is "", ``remark`` says why."""
 
     file: Path
     platform: str

@@ -156,7 +156,7 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
 
 
 def _interrupt_again(lost: Any) -> None:
-    """Repeat Ctrl-C if it came in a callback, such as of a weak reference, which loses exceptions."""
+    """Repeat Ctrl-C if it came in a callback, such as the callback of a weak reference, which loses exceptions."""
     if lost.exc_type is not KeyboardInterrupt:
         sys.__unraisablehook__(lost)
     elif threading.current_thread() is threading.main_thread():  # ``Threads`` repeats it for other threads

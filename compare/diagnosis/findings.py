@@ -314,7 +314,8 @@ def lag(engine: Engine) -> Lag:
 
 
 FINER, AFFORDABLE = 4.0, 5.0
-"""Ratio of steps for the repetition of a motion that does not converge, and its largest processor time in s."""
+"""Ratio of steps when a motion that does not converge is repeated, and largest processor time in s of the
+repetition."""
 
 
 def motion(engine: Engine, name: str) -> Motion:

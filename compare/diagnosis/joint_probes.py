@@ -44,7 +44,7 @@ BEGINS_AT = 1e-3  # largest error of the first state, relative to its size
 def asked(
     engine: Engine, motions: Sequence[tuple[AnySystem, tuple[float, ...], FloatArray]], tolerance: float
 ) -> list[FloatArray]:
-    """Return the states of each motion; raise ``BadTrajectoryError`` if one begins elsewhere."""
+    """Return the states of each motion; raise ``BadTrajectoryError`` if a motion begins elsewhere."""
     found = []
     for (_, start, _), run in zip(motions, engine.simulate_many(motions, tolerance=tolerance), strict=True):
         if not np.allclose(run.states[0], start, rtol=BEGINS_AT, atol=BEGINS_AT):
@@ -146,7 +146,8 @@ def loaded(engine: Engine, loads: Sequence[float], ratio: float, tolerance: floa
 def breakaway(engine: Engine, ratio: float) -> tuple[float, float]:
     """Return the largest load/F that a joint holds from rest, to 1 %, and its friction/F afterwards.
 
-    The first is ``ratio`` if it is right. Both are NaN if the engine does not simulate joints with this static ratio.
+    The largest load/F is ``ratio`` if the engine is right. Both are NaN if the engine does not simulate joints with
+    this static ratio.
     """
     tolerance = float(tolerances(engine)[-1])
     load = OVERLOAD * ratio

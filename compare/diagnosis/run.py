@@ -101,7 +101,7 @@ def _probed(engine: Engine, workers: Workers) -> Row:
 
 
 def measured(engine: Engine, part: str) -> Any:
-    """Return one part of an engine's diagnosis, why the engine refuses it, or None if it declares so."""
+    """Return one part of an engine's diagnosis, why the engine refuses it, or None if its declaration excludes it."""
     return _or_reason(parts_of(engine)[part], engine)
 
 

@@ -260,7 +260,7 @@ def of_nonlinear(forces: Shares) -> Iterator[Remark]:
 
 
 def of_far(far: Shares) -> Iterator[Remark]:
-    """Yield that friction is wrong far from the axis; without any, the engine's plate may end before."""
+    """Yield that friction is wrong far from the axis; if there is none, the engine's plate may end before."""
     (share,), (error,) = far.shares.tolist(), far.errors.tolist()
     missing = abs(share) <= max(MISSING, error)
     if abs(share - 1.0) > max(ALIKE, DISTINCT * error):

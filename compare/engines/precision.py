@@ -16,7 +16,7 @@ from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 LEAST_PRECISE = 1e-3  # largest precision that an engine may declare
-OTHER_SIZE = 0.25  # noise at every second tolerance, relative to that at the others
+OTHER_SIZE = 0.25  # noise at every second tolerance, relative to the noise at the others
 
 
 SINGLE = 1e-6

@@ -116,7 +116,7 @@ def owner_of(engine: Engine | None) -> str:
 
 
 def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
-    """Return the engines, renamed to the requested names where their own are ambiguous."""
+    """Return the engines, with the requested names where their own names are ambiguous."""
     taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])
     return tuple(
         replace(engine, name=name) if engine.name != name and taken[engine.name] > 1 else engine

@@ -38,7 +38,7 @@ class Case:
 
     @property
     def negligible(self) -> float:
-        """Error in m that does not show another law: 1 % of the effect of another law."""
+        """Negligible error in m: 1 % of the effect of another law."""
         return 0.1 * self.resolution
 
     @property

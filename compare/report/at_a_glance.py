@@ -36,7 +36,7 @@ class Glance:
 
 
 def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
-    """Return the engines of this run, then the recorded ones at their best settings."""
+    """Return the engines of this run, then the recorded engines at their best settings."""
     recorded = matrix.recorded[0] if matrix.recorded else None
     found = [_measured(run, matrix, engine, recorded) for engine in run.engines]
     if recorded is not None:
@@ -63,7 +63,7 @@ def _case(setting: Recorded, claim: Claim) -> str:
 
 
 def contrast(found: Sequence[Glance]) -> str:
-    """Return an example of a small error that differs and a larger one that agrees, or ""."""
+    """Return an example of a small error that differs and a larger error that agrees, or ""."""
     errors = {
         state: [
             (float(cell.claims[0].difference.max()), one.engine)
@@ -130,7 +130,7 @@ GAPS = {
 
 
 def _best(settings: Sequence[Recorded]) -> Recorded:
-    """Return the setting with the fewest claims that do not agree; of several, the one with the most that do."""
+    """Return the setting with the fewest claims that do not agree; among several, with the most agreements."""
 
     def badness(setting: Recorded) -> tuple[int, int, float]:
         agree = sum(claim.verdict is Verdict.AGREES for claim in setting.claims)

@@ -58,7 +58,7 @@ WORST_FIRST = (
     State.NOT_SIMULATED,
     State.AGREES,
 )
-"""States by priority: a cell takes the first one of its claims."""
+"""States by priority: a cell takes the first state among its claims."""
 
 
 @dataclass(frozen=True)
@@ -236,7 +236,7 @@ class Matrix:
 
     @property
     def agrees(self) -> bool:
-        """True if at least one cell agrees and all simulated ones do."""
+        """True if at least one cell agrees and all simulated cells do."""
         return self.totals[State.AGREES] > 0 and not self.worst
 
 
@@ -303,7 +303,7 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
 
 
 def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
-    """Return a cell with its kind of evidence; another of ``rows`` may imply its verdict."""
+    """Return a cell with its kind of evidence; another row of ``rows`` may imply its verdict."""
     cell = row.cells[column]
     if not cell.claims:
         return cell

@@ -18,7 +18,7 @@ from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
 
 Progress = Callable[[int, int, str, float], None]
-"""Takes the numbers of finished and of all pieces of work, the names of the running ones and the time left in s."""
+"""Takes the numbers of finished and of all pieces of work, the names of the running pieces and the time left in s."""
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Reusable worker processes; a crash of one does not affect the others.
+"""Reusable worker processes; a crash of one process does not affect the others.
 
 ``concurrent.futures`` gives up its whole pool when one process dies, and compiled engines may crash.
 """

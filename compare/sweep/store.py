@@ -114,7 +114,7 @@ class SweepStore:
             whole = whole and chunk >= 1
         except (StoreError, MemoryError):
             raise
-        except Exception:  # a description of a stranger may raise anything
+        except Exception:  # the description of an unknown store may raise anything
             whole = False
         if not whole:
             raise ValueError(
@@ -171,7 +171,7 @@ class SweepStore:
         self.end(self.begin(name, {}), dataset)
 
     def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
-        """Replace a group by one that workers write; :meth:`end` completes it."""
+        """Replace a group by a group that workers write; :meth:`end` completes it."""
         self.files.remove(name)
         group = self._group(name)
         with store_errors(self.files.url):

@@ -64,7 +64,7 @@ class DrivetrainMotion:
 class DrivetrainModel:
     """A drivetrain in Exudyn, assembled.
 
-    ``container`` owns ``mbs`` and must live as long. ``engine``, ``disc`` and ``vehicle`` are nodes, whose
+    ``container`` owns ``mbs`` and must live as long as ``mbs``. ``engine``, ``disc`` and ``vehicle`` are nodes, whose
     coordinates and velocities the ``sensors`` record. ``friction.change(normal_load=...)`` engages the clutch.
     ``support`` holds the disc on its shaft. ``balance`` returns the energy balance after a run.
     """

@@ -1,7 +1,7 @@
 """Friction about one axis: regularised between rotors, or with exact stick between any bodies.
 
 The slip of the centre is zero. With the mean radius r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P
-< ε. Points share this equally. Constant load and coefficient need no compiled code.
+< ε. Points share this moment equally. Constant load and coefficient need no compiled code.
 
 A contact with exact stick is sliding, locked or open. The moment of a sliding contact does not depend on the sign of
 the slip, so the equations stay smooth across zero slip. While the contact is locked, a constraint holds the spins

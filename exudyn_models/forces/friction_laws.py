@@ -67,8 +67,9 @@ SECANT = 0.3
 
 There F = K·slip with the secant K, which depends on the direction only. Newton's method starts from the slip without
 acceleration, thousands of times the creep. With the derivative alone it cycles for one load in ten on six points, and
-one in six on three; with a share of 0.3 it converged for all, in 7 iterations. On three feet with unequal shares 5 of
-100 loads take more than 25 iterations, and on four feet in a line 13; the solver then takes a smaller step.
+for one in six on three points. With a share of 0.3 it converged for all loads, in 7 iterations. On three feet with
+unequal shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13; the solver then takes a
+smaller step.
 """
 
 
@@ -321,11 +322,11 @@ def _slip_of_point(
 def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Like ``derivatives_by_slip``, for circles."""
+    """Return the same as ``derivatives_by_slip``, for circles."""
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    # At rest the slope depends on the direction of the next slip; this one assumes no rotation.
+    # At rest the slope depends on the direction of the next slip; this slope assumes no rotation.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
     by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
     by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)

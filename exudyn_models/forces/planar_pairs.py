@@ -44,7 +44,7 @@ def jacobian_in_the_plane(
     """Return the derivatives of the negative forces, shape (n, n), under a load and a coefficient of time alone."""
     contact, motion, _, disc = _contact_and_motion(parameters, t, q, q_t)
     derivatives = ring_friction_derivatives(*motion, contact)
-    # The ground is a planar master without coordinates, a rotor one without x and y.
+    # The ground is a planar master without coordinates, and a rotor is a planar master without x and y.
     hidden = SIZES[PLANAR] - disc
     return _over_both_nodes(derivatives, position_factor, velocity_factor)[hidden:, hidden:].copy()
 

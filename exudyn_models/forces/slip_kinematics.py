@@ -66,7 +66,7 @@ Rotors and the ground then have the global z axis through the origin.
 Floats = Sequence[float]
 
 Array = NDArray[Any]
-"""Array of real numbers, or of complex ones for derivatives."""
+"""Array of real numbers, or of complex numbers for derivatives."""
 
 
 Vector = tuple[Any, Any, Any]

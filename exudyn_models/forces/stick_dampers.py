@@ -5,7 +5,7 @@ with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²
 friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_and_place`` it is the damper D =
 (μN/ε)·Jᵀ·V·J between two bodies.
 
-For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
+If P > ε, one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
 μN over the δ of ``friction_laws``.
 """
 

@@ -175,8 +175,8 @@ class _Turns:
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the index of the last step before smaller steps are needed, or None.
 
-        They are needed by a release at ``crossing``, or by a load so close to the friction limit that the error of
-        the creep could cross it.
+        Smaller steps are needed for a release at ``crossing``, or for a load so close to the friction limit that the
+        error of the creep could cross the limit.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING

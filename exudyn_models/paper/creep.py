@@ -107,8 +107,8 @@ class RegularisedContact:
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
         """Return the load at rest divided by the friction limit, shape (n,), for a system that creeps as a whole.
 
-        It is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the creep,
-        divided by μN·P.
+        The result is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the
+        creep, divided by μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)

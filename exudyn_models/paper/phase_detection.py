@@ -89,8 +89,8 @@ NEIGHBOURS = 100
 def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
     """Return which ``steps`` are needed to find the phases, shape (n,).
 
-    These are the ends of each uniform run, its largest slip, the last step whose load friction can hold, and the step
-    that it holds most clearly.
+    These are the ends of each uniform run, the step of its largest slip, the last step whose load friction can hold,
+    and the step whose load it holds most clearly.
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)

@@ -112,7 +112,7 @@ class Scales:
 def time_scale(system: System, state: FloatArray, span: float) -> float:
     """Return the time scale of the motion in s: the shortest of 1/k, 1/|ω|, m/β and ``span``.
 
-    A disc adds its spin, the speed of its shaft, and J/b. For a hardening support k is that at the largest deflection
+    A disc adds its spin, the speed of its shaft, and J/b. For a hardening support k belongs to the largest deflection
     that the initial energy allows. A stop counts as touched.
     """
     stiffest = hardened_stiffness(system, state) + system.stop_stiffness

@@ -131,8 +131,8 @@ def simulate_fixed_step(
     """Return the motion by one Exudyn integrator with the constant step ``step`` (s), for convergence studies.
 
     ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha" or "TrapezoidalIndex2" (implicit,
-    order 2). An explicit one needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is nan.
-    Raises as ``simulate``.
+    order 2). An explicit integrator needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is
+    nan. Raises as ``simulate``.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)

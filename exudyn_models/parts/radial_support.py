@@ -5,7 +5,7 @@ body, w and ẇ are relative to the turning body, so a rigid motion of both caus
 the body, including the moment −d×F.
 
 A linear support on the ground is Exudyn's ``CartesianSpringDamper``, which takes a tenth of the time of a Python
-function. Any other is a massless ``ObjectGenericODE2``.
+function. Any other support is a massless ``ObjectGenericODE2``.
 """
 
 from collections.abc import Sequence

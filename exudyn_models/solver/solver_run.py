@@ -25,8 +25,8 @@ FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
 class Model:
     """Assembled model of a system, with sensors for the state of one body.
 
-    ``container`` owns ``mbs`` and must live as long. The body has ``size`` coordinates of ``mbs`` from ``first`` on,
-    which ``sensors`` record with their first and second time derivatives.
+    ``container`` owns ``mbs`` and must live as long as ``mbs``. The body has ``size`` coordinates of ``mbs`` from
+    ``first`` on, which ``sensors`` record with their first and second time derivatives.
     """
 
     container: Any
@@ -72,7 +72,7 @@ step give the same results.
 
 @dataclass
 class StepCount(trajectory.StepCount):
-    """Counts the steps of a motion from 0 to ``end``, in units of time of ``seconds`` s."""
+    """Counts the steps of a motion from 0 to ``end``; the unit of time is ``seconds``."""
 
     seconds: float = 1.0
 

@@ -41,7 +41,7 @@ from reference_model.trajectory import Kind, SimulationError, Solution, StepCoun
 METHOD = "DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
 
 LOCAL, LEAST = 0.05, 3e-14
-"""Tolerance of a step as a share of the motion's, and its smallest value."""
+"""Tolerance of a step as a share of the motion's tolerance, and its smallest value."""
 
 SUM, DENSITY = 10.0, 5.0
 """Largest sum of the errors of steps in tolerances, and number of steps per unit of time.

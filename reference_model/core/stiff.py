@@ -34,7 +34,7 @@ from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12
-"""First step from rest, which shrinks until the motion is resolved, and the smallest."""
+"""First step from rest, which shrinks until the motion is resolved, and smallest step."""
 
 BRIEF = 1e-5
 """Longest slip from rest in closed form; its relative error is of this order."""
@@ -49,7 +49,7 @@ FAST = 2.0 / 3.0
 """Pace of stretched time where slip is so fast that friction turns it at the rate 1."""
 
 DAMPED = 3.0
-"""Step times the rates of the dampers below which they do not limit an explicit step."""
+"""Step times the rates of the dampers, below which the dampers do not limit an explicit step."""
 
 RISING = 10.0
 """Rate of relaxation times the step below which an explicit method is as efficient."""

@@ -28,7 +28,7 @@ MOST_POINTS = 24
 
 
 MOST_THREADS = 1024
-"""Limit of ``threads``; more than the processors have no use."""
+"""Limit of ``threads``; more threads than processors are useless."""
 
 
 def simulate_ensemble(

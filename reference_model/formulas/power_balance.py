@@ -168,7 +168,7 @@ def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
 
 
 def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    # A spline needs an odd degree and more samples than that.
+    # A spline needs an odd degree and more samples than its degree.
     degree = min(SPLINE_DEGREE, (len(t) - 2) // 2 * 2 + 1)
     antiderivative = make_interp_spline(t - t[0], rates, k=degree).antiderivative()
     result: FloatArray = antiderivative(t - t[0])

@@ -11,10 +11,10 @@ PARTS: list[Callable[..., Any]] = []
 """Functions that compiled code calls."""
 
 INLINED: list[Callable[..., Any]] = []
-"""Those that are small and called often."""
+"""Functions that are small and called often."""
 
 REPLACED: dict[Callable[..., Any], Callable[..., Any]] = {}
-"""Functions that need Python, and those in their place in compiled code."""
+"""Functions that need Python, and their replacements in compiled code."""
 
 
 def part(function: Function) -> Function:

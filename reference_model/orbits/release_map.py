@@ -26,7 +26,7 @@ from reference_model.trajectory import Trajectory
 SEARCH_TIMES = (1.5, 16.0)
 """Search times for a release, in units of the longer of a turn of the disc and a free period of the pin.
 
-A pin that does not stick within the second is assumed never to stick.
+A pin that does not stick within the second of these times is assumed never to stick.
 """
 
 NODES = 48
@@ -119,7 +119,7 @@ class ReleaseMap:
                 yield Release(slip.start, self.angle(slip.initial_state), stick.end - stick.start)
 
     def after(self, angle: float) -> Release | None:
-        """Return the release after one at ``angle``; None if the pin never sticks again."""
+        """Return the release after a release at ``angle``; None if the pin never sticks again."""
         # Rounding may hold the pin for another moment.
         return self.first(self.state(angle), lambda release: release.time > release.stick_time)[0]
 

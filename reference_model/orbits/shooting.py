@@ -79,7 +79,7 @@ COLLAPSED = 1e-6
 
 
 MOST_NOISE = 1e-2
-"""Largest relative noise of the states that still leaves an orbit to be found."""
+"""Largest relative noise of the states with an orbit that can still be found."""
 
 
 @dataclass(frozen=True)
@@ -225,7 +225,7 @@ class Orbit:
     def multipliers(self) -> tuple[complex, ...]:
         """Floquet multipliers, largest first.
 
-        One is 1, for a shift in time, and a second one if the motion recurs up to a rotation.
+        One multiplier is 1, for a shift in time; a second is 1 if the motion recurs up to a rotation.
         """
         multipliers = np.linalg.eigvals(self.monodromy)
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))

@@ -61,7 +61,7 @@ class StepCount:
 
 @dataclass(frozen=True)
 class Phase:
-    """A time span of slip, stick or pivoting, which ends where the next one starts.
+    """A time span of slip, stick or pivoting, which ends where the next span starts.
 
     ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about a resting contact point.
     """
@@ -73,7 +73,7 @@ class Phase:
 
 
 def phases_of(begun: Sequence[tuple[Kind, float, FloatArray]], end: float) -> tuple[Phase, ...]:
-    """Return the phases for their kinds, starts in s and first states; the last one lasts until ``end``."""
+    """Return the phases for their kinds, starts in s and first states; the last phase lasts until ``end``."""
     ends = [*(start for _, start, _ in begun[1:]), end]
     return tuple(
         Phase(kind, start, until, state) for (kind, start, state), until in zip(begun, ends, strict=True)

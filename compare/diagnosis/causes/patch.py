@@ -191,7 +191,7 @@ def law_of(found: Patch, strength: float) -> tuple[str, bool]:
         if own > allowed:
             fits = [(*_fit(law, motions, wrenches), law.bounds is None) for law in _laws(exact)]
             close = [one for one in fits if one[0] <= allowed]
-            certain = [one for one in close if one[2]] or close  # those without a free number explain more
+            certain = [one for one in close if one[2]] or close  # laws without a free number explain more
             nearest, closest, _ = min(fits)
             rest = f"follows no known law: the closest {closest}, up to {error_text(100.0 * nearest)} % of μN"
             said = " or ".join(text for _, text, _ in certain) or rest

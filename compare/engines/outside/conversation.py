@@ -106,7 +106,7 @@ _OPEN: dict[tuple[int, tuple[str, ...], str], Conversation] = {}
 
 
 def conversation_with(command: tuple[str, ...], folder: str) -> Conversation:
-    """Return this process's conversation with the program; start a new one if the last has ended."""
+    """Return this process's conversation with the program; start a new conversation if the last has ended."""
     key = os.getpid(), command, folder  # a forked process needs its own
     found = _OPEN.get(key)
     if found is None or found.over:

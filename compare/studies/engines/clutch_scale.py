@@ -51,7 +51,7 @@ UNTIL, SAMPLES = 240.0, 481
 """Duration in s until this pin rests, and number of samples."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
-"""Fig. 6 at 0.12 N."""
+"""The pin of Fig. 6 at 0.12 N."""
 
 REST_OF_DISC = 40.0
 """Duration in s for a disc of Fig. 8 that starts in the equilibrium of (19) and (20)."""

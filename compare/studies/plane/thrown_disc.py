@@ -101,7 +101,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 # --- A full disc under uniform pressure
 
 EPSILON = 100.0
-"""Regularisation ε of Exudyn's part over tolerance and speed; its effect on a sliding disc is of order ε²."""
+"""Regularisation ε of Exudyn's part, divided by tolerance and speed; its effect on a sliding disc is of order ε²."""
 
 
 def by_contact_law(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:

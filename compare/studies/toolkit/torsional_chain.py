@@ -59,7 +59,7 @@ Pieces = Sequence[tuple[float, Harmonic]]
 class Chain:
     """Rotors with external torques, and the clutches between them.
 
-    A slipping clutch transmits its capacity, and a stuck one up to ``static_ratio`` times as much; 0 opens it. The
+    A slipping clutch transmits its capacity, and a stuck clutch up to ``static_ratio`` times as much; 0 opens it. The
     ``inertias`` (kg m²) are numbers, or the mass matrix of coordinates that gears couple. A row of ``slips`` maps the
     speeds to the slip of one clutch; by default the clutches connect neighbours. The rows must be independent.
     """

@@ -18,7 +18,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 # --- Steady and periodic motions along one parameter
 
 SAMPLES = 64
-"""Number of samples of an orbit; the radius of a nearly circular one varies by 1e-3 between two."""
+"""Number of samples of an orbit; the radius of a nearly circular orbit varies by 1e-3 between two samples."""
 
 
 def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:

@@ -93,7 +93,7 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
 WATCHED = 0.5  # share of a trajectory that decides the end state
 
 SAMPLES_PER_TURN = 64
-"""Samples per turn in the last part; earlier ones only give the extent of the motion."""
+"""Samples per turn in the last part; earlier samples only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
 AT_REST = 0.02  # largest distance of a resting centre from its last position, relative to the motion

@@ -47,7 +47,7 @@ def result_of_python(
 ) -> Any:
     """Call a function, one of ``objects``, with the subset of four numbers whose bits are set in ``places``.
 
-    It is NaN for anything but a number. Errors are passed on.
+    The result is NaN for anything but a number. Errors are passed on.
     """
     floats = [types.float64] * ARGUMENTS
 

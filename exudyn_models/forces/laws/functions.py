@@ -24,8 +24,8 @@ Checked = Callable[[float, float, float, float], float]
 class LawFunction:
     """A coefficient or load that is a function of ``arguments``, in the order of ``ARGUMENTS``, for compiled code.
 
-    ``positional`` takes just these arguments, ``checked`` all ``ARGUMENTS``. ``address`` is the machine code's, 0 for
-    a Python function.
+    ``positional`` takes only these arguments, ``checked`` all ``ARGUMENTS``. ``address`` is the address of the
+    machine code, 0 for a Python function.
     """
 
     arguments: tuple[str, ...]

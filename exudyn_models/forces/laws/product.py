@@ -21,7 +21,7 @@ READS = 8
 """Place of the arguments of all factors, as bits, in the numbers of a law."""
 
 Law = tuple[float, tuple[Any, ...]]
-"""Address of numbers, and objects: two functions, each followed by one that reports an error in its result."""
+"""Address of numbers, and objects: two functions, each followed by a function that reports an error in its result."""
 
 ABSENT = -1.0
 """Marks the arguments of an absent function."""

@@ -87,7 +87,7 @@ class RotorCoupling:
 def rotors_of(mbs: Any, **rotors: Any) -> dict[str, Any]:
     """Return the nodes of rotors, by the names of arguments: nodes or objects on one axis; None is the ground.
 
-    Raises ``ValueError`` if one is not a rotor, or two are equal.
+    Raises ``ValueError`` if a node is not a rotor, or two are equal.
     """
     nodes: dict[str, Any] = {}
     for name, rotor in rotors.items():

@@ -139,9 +139,10 @@ def _null_space(rows: FloatArray) -> FloatArray:
 def linearise(mbs: Any) -> Linearisation:
     """Linearise a model about its present state, the end of its last run or its initial values.
 
-    Contacts with exact stick obey Coulomb's law at this state: locked ones are constraints, and sliding ones have the
-    slope of their friction. Contacts that are locked together share their load with the least largest share of
-    their static friction. Contacts between the same bodies then carry it in proportion to their static friction.
+    Contacts with exact stick obey Coulomb's law at this state: locked contacts are constraints, and sliding contacts
+    have the slope of their friction. Contacts that are locked together share their load so that the largest share of
+    their static friction is as small as possible. Contacts between the same bodies then carry it in proportion to
+    their static friction.
 
     Constraint forces count with the turn of their directions (a pendulum has the stiffness of its weight). Loads of
     user functions count as constant, and so do the directions of constraints that the present velocities turn.

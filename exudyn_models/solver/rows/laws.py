@@ -93,7 +93,7 @@ class OneWayLaw(RotaryLaw):
     """A one-way clutch: the slip is free forward, and locked backward by any moment >= 0."""
 
     def limits(self, t: float) -> tuple[float, float]:
-        """Return the limits in N m; the second one exceeds all present moments."""
+        """Return the limits in N m; the second limit exceeds all present moments."""
         self.largest = max(self.largest, ABOVE * float(np.abs(self.multipliers()).max(initial=0.0)), 1.0)
         return FREE * self.largest, self.largest
 

@@ -167,7 +167,7 @@ def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
 
 
 def mobilities(mass: FloatArray) -> FloatArray:
-    """Return the inverse of each mass, shape (n,); the smallest mass takes the place of those that are zero."""
+    """Return the inverse of each mass, shape (n,); the smallest mass replaces masses that are zero."""
     masses = np.diag(mass)
     heavy = masses > LIGHT * np.abs(mass).max(axis=1, initial=0.0)
     return np.asarray(1.0 / np.where(heavy, masses, np.min(masses, where=heavy, initial=np.inf)))

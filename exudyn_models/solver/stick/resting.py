@@ -106,7 +106,7 @@ class Resting:
         before: Sequence[int],
         to_loads: FloatArray,
     ) -> None:
-        """Choose the rows of the contacts ``resting`` that become constraints, and find those that share loads.
+        """Choose the rows of ``resting`` contacts that become constraints, and find contacts that share loads.
 
         ``places`` locate the forces of all constraints, and rows ``before`` are preferred. Forces along all
         rows change the moments of meshes by ``to_loads``, shape (m, k).

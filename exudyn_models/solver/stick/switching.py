@@ -113,7 +113,9 @@ class _Run:
 
     def _choose_accuracy(self) -> None:
         """Change settings of Newton's method as friction requires."""
-        self._options.generalizedAlpha.computeInitialAccelerations = False  # ``dynamics`` finds better ones
+        self._options.generalizedAlpha.computeInitialAccelerations = (
+            False  # ``dynamics`` finds better accelerations
+        )
         newton = self._options.newton
         newton.maxIterations = max(newton.maxIterations, ITERATIONS)
         if self._planar:
@@ -127,7 +129,7 @@ class _Run:
         def prepare(mbs: Any, t: float) -> bool:
             for contact in self._planar:
                 contact.start_step(mbs)
-            if t <= self._announced:  # a shorter step replaces one that passed a change
+            if t <= self._announced:  # a shorter step replaces a step that passed a change
                 return True
             self._announced = t
             return own(mbs, t)

@@ -2,7 +2,7 @@
 
 Each number has its own row (:mod:`records`), so a loop over the lanes is vectorised if it calls only inlined
 functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events it raises
-a flag, which scalar code handles. Results are the same bit by bit in every lane.
+a flag, which scalar code handles. Results are bitwise identical in every lane.
 """
 
 import math

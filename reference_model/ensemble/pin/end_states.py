@@ -21,8 +21,8 @@ Whirl
     For equal parameters ``trapping`` finds the orbit and a neighbourhood that its return map to the section where x
     is largest contracts. Otherwise the crossings must converge: with the distance d of the last two and the larger q
     of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY times the speed there. Distances that are
-    only noise also count. A motion may pass an unstable orbit, so the orbit must also attract, and be as close by the
-    derivative of its return map. Small deviations (δz, δv), with the slip velocity w = s·n, satisfy::
+    only noise also count. A motion may pass an unstable orbit, so the orbit must also attract, and the derivative of
+    its return map must confirm the distance. Small deviations (δz, δv), with the slip velocity w = s·n, satisfy::
 
         δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 

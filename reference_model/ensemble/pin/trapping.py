@@ -32,7 +32,7 @@ DIRECTIONS = 128
 """Number of points on an ellipsoid."""
 
 GROWTH = 1.25
-"""Ratio of successive ellipsoids; the first one is FIRST times the size of the motion."""
+"""Ratio of successive ellipsoids; the first ellipsoid is FIRST times the size of the motion."""
 
 FIRST = 1e-2
 

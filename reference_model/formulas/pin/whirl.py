@@ -1,6 +1,6 @@
 """Section 3 of the paper: the whirl (11), its stability, (12) to (16), and the whirl with an offset.
 
-The latter is (18), with the exact first and third orders in X0. Its functions raise ``ValueError`` as
+For the offset it contains (18), and the exact first and third orders in X0. Its functions raise ``ValueError`` as
 :func:`whirl_radius`.
 """
 
@@ -223,9 +223,9 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
     """Return the imaginary part of the whirl's mean at third order in X0 over first order, to leading order in d.
 
     Let d = β/(mk) and τ = kt. In units of ρ_c, (1) without damping has the motions X0 + ρ·exp(iτ) + σ·exp(−iτ).
-    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean:
-    that of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and b = (2w − 1)σ/ρ. Its
-    harmonics to third order give::
+    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean.
+    The slip has the direction of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and
+    b = (2w − 1)σ/ρ. Its harmonics to third order give::
 
         exp(iτ)   1 − a²/4           = ρ
         exp(−iτ)  b/2 − a²/8         = −σ

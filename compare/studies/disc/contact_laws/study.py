@@ -112,8 +112,8 @@ def friction_on(
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
     found, error = refined(friction, TIGHTEST)
-    # Single errors may be small by chance, so take the largest noise of all motions and each one's largest truncation
-    # error.
+    # Single errors may be small by chance, so take the largest noise of all motions and the largest truncation error
+    # of each motion.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
     along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
     return Measured(

@@ -37,7 +37,7 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number in order of decreasing size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from one to the next
+ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from circle to circle
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
@@ -197,7 +197,7 @@ def weak_damping_load(disc: DiscOnDisc) -> float:
 
 
 def marginal_ratio(law: IsotropicContact | None) -> float:
-    """Return the α of the whirl, tan α = R|S|/U, where an eigenvalue other than the phase's is zero."""
+    """Return the α of the whirl, tan α = R|S|/U, with a second eigenvalue of zero."""
 
     def growth(alpha: float) -> float:
         whirl = whirl_at(CENTRED, alpha, law)

@@ -65,7 +65,7 @@ def critical_of(engine: Engine) -> tuple[float, Measurement]:
         measured, error = refined(lambda tolerance: found(tolerance)[0])
         _, interpolation, slope, near = found(WORKING)
         exact = theory.multipliers_by_variation(theory.disc_at(float(measured)), near)
-    except RuntimeError:  # no whirl, or no critical one
+    except RuntimeError:  # no whirl, or no critical whirl
         return math.nan, Measurement(np.array(math.nan), np.array(0.0))
     error = error + interpolation + error_of_monodromy(near) / abs(slope)
     predicted = float(measured) - (theory.pair_modulus(exact) - 1.0) / slope

@@ -45,7 +45,7 @@ ALL_SLIP_UNTIL, LETS_GO_FROM = 0.7, 0.82
 """Times in s: all closed clutches slip until the first, one of ``SHOWN``; the first release is after the second."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
-"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from each to the next.
+"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from row to row.
 
 The bristle's damping in N m s/rad is twice the root of its stiffness, critical for a rotor of 1 kg m².
 """

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 FINER = 24
-"""Rings of the reference's annulus instead of 16, to estimate their error."""
+"""Rings of the reference's annulus in place of 16, which shows the error of 16 rings."""
 
 CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
 TORQUE, SLIPPING = 80.0, 12.0
@@ -67,8 +67,8 @@ multiple of the usual tolerance.
 SPEEDS, TORQUES = np.linspace(2900.0, 6500.0, 32), np.geomspace(0.2, 60.0, 32)
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 SURPLUS, SPEED = 0.1, 6000.0
-"""Speeds in rpm, from just above the natural frequency, torques in N m and surpluses of the maps; surplus in the map
-of speeds, and speed in the map of surpluses.
+"""Axes of the maps: speeds in rpm from just above the natural frequency, torques in N m and surpluses. Then the
+surplus of the map of speeds, and the speed of the map of surpluses.
 """
 
 ENGINE, VEHICLE, ANGLE, CENTRE = 0, 1, 4, slice(2, 4)

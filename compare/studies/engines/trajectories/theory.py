@@ -99,7 +99,7 @@ MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
 """Only in the pin that sticks does a point of the contact come to rest, where friction has a kink."""
 
 ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
-"""Motions for an engine that differs from another one only in its contact."""
+"""Motions for an engine that differs from another engine only in its contact."""
 
 SEED = 8
 

@@ -31,7 +31,7 @@ FASTEST = replace(FIG5, disc_speed=3.0)
 """Twice the speed of Fig. 5, with a small basin."""
 
 WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.06))}
-"""Search range of each boundary; the ends on the grid show that no part lies outside."""
+"""Search range of each boundary; the ends on the grid show that no part of it lies outside."""
 
 CELLS, ON_BOUNDARY = 8, 1e-5
 """Resolution and tolerance of the boundary; splines between its points are 1.2e-3 off, half a step of the grid."""
@@ -277,7 +277,7 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)
     how_far = f", none farther than {off.max():.2g} from it" if off.size else ""
-    # The others match their side of the curve, or are closer to it than the starts for shooting.
+    # All other starts match their side of the curve, or are closer to it than the starts for shooting.
     margins = np.concatenate((as_it_ended, np.ones(len(places) - len(farthest))))
     return answers_of(
         margins,

@@ -27,7 +27,7 @@ UNTIL = 400.0
 
 SAMPLES = 4001
 
-FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
+FURTHER_TURNS = 20  # turns of the whirl after a run; the last turn is averaged
 SLIDING_START, SLIDING_TIMES = (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 100.0, 101)
 """Permanent slip near the whirl (our choice)."""
 

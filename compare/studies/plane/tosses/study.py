@@ -111,7 +111,7 @@ def spin() -> Measured:
 
 @cache
 def left_by(load: str, half_side: float, of: Slides | None = None) -> FloatArray:
-    """Return the predicted share of the spin that a load leaves, shape (5,), of these or of all slides."""
+    """Return the predicted share of the spin that a load leaves, shape (5,), for these or for all slides."""
     slides = of or measured()
     share, _ = spins_left(theory.predicted(slides, LOADS[load], half_side).spins, slides["spin_first"])
     return np.asarray(share)
@@ -157,7 +157,7 @@ def curls() -> Measured:
 # --- Engines
 
 FEWER = 24
-"""Number of simulated slides, those with the fastest spin."""
+"""Number of simulated slides; the slides with the fastest spin are simulated."""
 
 TOLERANCE = 1e-6
 """Tolerance of engines, whose errors are far below the measurement's."""
@@ -232,7 +232,7 @@ def turns(engine: Engine) -> Measured:
 def of_engine(
     engine: Engine, numbers: slice, predicted: FloatArray, error: FloatArray, at: dict[str, Any]
 ) -> Measured:
-    """Compare ``numbers`` of the engine with measured ones and their ``error``."""
+    """Compare ``numbers`` of the engine with measured numbers and their ``error``."""
     found, errors = (each[numbers] for each in slid(engine))
     return Measured(predicted=predicted, value=found, error=error + errors, size=1.0, at=at)
 

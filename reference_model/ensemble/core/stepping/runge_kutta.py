@@ -34,7 +34,7 @@ The error estimate would accept errors of a hundred tolerances.
 """
 
 LOCAL = 0.1
-"""Tolerance of a step as a share of the motion's."""
+"""Tolerance of a step as a share of the motion's tolerance."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
 """Bounds on the ratio of successive steps, and safety factor."""
