@@ -43,7 +43,7 @@ MOTIONS = CASES | {"ring": replace(CASES["disc"], **RING)}
 class Creep:
     """Creep in m/s of a block that friction should hold, at the finest rung.
 
-    Orders are those in the step, or in the tolerance if the step is not fixed; NaN if undefined.
+    Orders refer to the step, or to the tolerance if the step is not fixed; NaN if undefined.
     """
 
     speed: float  # under a load of μN/2

@@ -102,7 +102,7 @@ SUPPORTS = {
     "constant applied moment": (replace(SMOOTH, moment=((0.0, 1.0),)), (0.0, 1.0)),
     "changing applied moment": (replace(SMOOTH, moment=((0.0, 0.0), (0.08, 1.0), (0.1, 2.0))), (0.0, 1.0)),
 }
-"""Turning joints and their initial states, with one acting moment."""
+"""Turning joints and their initial states, each with one acting moment."""
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:

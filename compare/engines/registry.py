@@ -59,7 +59,7 @@ _ON_REQUEST: set[str] = set()
 class Scheme(NamedTuple):
     """Meaning of names "scheme:REST": a function that returns the engine of REST, and a quick check of REST.
 
-    Both raise ``ValueError`` if REST is invalid. If ``alone``, REST may be missing and is then "".
+    Both functions raise ``ValueError`` if REST is invalid. If ``alone``, REST may be missing and is then "".
     """
 
     engine: Callable[[str], Engine]

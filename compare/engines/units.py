@@ -93,7 +93,7 @@ class InOtherUnits:
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
-        """The same for ``function.simulate_many``; None if it is missing, or takes one step for all motions."""
+        """Wrapped ``function.simulate_many``; None if it is missing, or takes one step for all motions."""
         at_once = getattr(self.function, "simulate_many", None)
         return at_once and functools.partial(self._many, at_once)
 

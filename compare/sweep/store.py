@@ -232,7 +232,7 @@ def archive_of(place: str) -> Path | None:
 
 
 def is_free(files: Files) -> bool:
-    """Return whether no store exists there."""
+    """Return whether no store exists at the place of ``files``."""
     archive = archive_of(files.url)
     return not files.inside() and (archive is None or not archive.exists())
 

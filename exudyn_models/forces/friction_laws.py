@@ -7,11 +7,11 @@ The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S, so 
 Near rest the laws are regularised, but *exact* as soon as all slip reaches ε. With v/√(v²+ε²) every release would
 leave an error of ε^0.8; here all errors are of first order in ε.
 
-- *The contact as a whole* is viscous for P < ε: force and moment are those for the same direction of (u, S) at P = ε,
-  times P/ε. So a disc creeps with P < ε if and only if Coulomb friction could hold it.
+- *The contact as a whole* is viscous for P < ε: force and moment have their values for the same direction of (u, S)
+  at P = ε, times P/ε. So a disc creeps with P < ε if and only if Coulomb friction could hold it.
 - *One of several points* is regularised when it passes through rest, because its friction alone could jump. Below δ
-  its own friction is viscous. While its slip v is below 4δ/3 the friction of the others is that for a centre of
-  rotation closer to the point: for their slip minus v if v < δ, and minus v·(4 − 3v/δ) beyond. So the force of the
+  its own friction is viscous. While its slip v is below 4δ/3, the friction of the others belongs to a centre of
+  rotation closer to the point: to their slip minus v if v < δ, and minus v·(4 − 3v/δ) beyond. So the force of the
   point grows from zero to its share of μN, while the others act as if the disc pivots about it. δ, see
   ``laws/places``, ensures that at P = ε no two points are slower than 4δ/3.
 """

@@ -39,10 +39,10 @@ class RegularisedContact:
 
     @cached_property
     def relaxation_times(self) -> tuple[float, float]:
-        """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
+        """Relaxation times in s of slip below ε to creep: the shorter and the longer time of centre and rim.
 
-        The resistance per m/s is μN/ε for a pin, at least half of that for a disc or its rim on a continuous ring,
-        and 1/n of that for one of n points at rest. The inertia of the rim, J/R², may be far larger than the mass.
+        The resistance per m/s is μN/ε for a pin, at least half as large for a disc or its rim on a continuous ring,
+        and 1/n as large for one of n points at rest. The inertia of the rim, J/R², may be far larger than the mass.
         """
         system = self.system
         if system.friction_force == 0.0:

@@ -135,7 +135,7 @@ class ReleaseMap:
         return 1.0 + near + (near - far) / 3.0
 
     def pieces(self) -> Iterator[tuple[float, float]]:
-        """Yield intervals of angles with a next stick phase, in increasing order."""
+        """Yield the intervals of angles that lead to another stick phase, in increasing order."""
         nodes = (np.arange(NODES) + 0.5) * math.pi / NODES
         sticks = [self.after(node) is not None for node in nodes.tolist()]
         start: float | None = EDGE if sticks[0] else None

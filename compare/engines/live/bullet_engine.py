@@ -5,7 +5,8 @@ has a revolute joint. The plate is too heavy to be slowed.
 
 - Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. With the
   settings as shipped, only the motors are off.
-- The friction coefficient is the product of both bodies'. Slop and the solver's residual threshold are 0.
+- The friction coefficient is the product of the coefficients of both bodies. Slop and the solver's residual threshold
+  are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
 Friction opposes the slip at the end of a step. With the cone off, it is bounded per world axis. With the cone on,

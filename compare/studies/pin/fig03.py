@@ -246,7 +246,8 @@ def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     equation="(5)",
     note=f"Does each mode of the linearised (1) decay? Grid: μN/(C·X0) = {GRID_SHARES[0]:g} … "
     f"{GRID_SHARES[-1]:g}, ω = {GRID_SPEEDS[0]:g} … {GRID_SPEEDS[-1]:g} rad/s, β = {GRID_DAMPINGS[0]:g} … "
-    f"{GRID_DAMPINGS[-1]:g} N s/m; rounding may leave one in a thousand undecided. In closed form they are the roots "
+    f"{GRID_DAMPINGS[-1]:g} N s/m; rounding may leave one point in a thousand undecided. In closed form they "
+    f"are the roots "
     "of mλ² + βλ + C and of mλ² + (β + μN/(ωρ*))λ + C, which all have negative real parts if β > 0.",
     swept=("friction_force", "disc_speed", "damping"),
 )

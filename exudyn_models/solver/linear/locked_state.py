@@ -189,7 +189,7 @@ def linearise(mbs: Any) -> Linearisation:
 
 
 def _settle(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> list[list[StickingContact]]:
-    """Choose the modes of the contacts; return those that share a load."""
+    """Choose the modes of the contacts; return the contacts that share a load."""
     planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
     choice = ModeChoice(mbs, t, contacts, SlidingSteps(mbs, planar, STEP), STEP)
     choice.settle(t)

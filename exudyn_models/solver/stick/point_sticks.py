@@ -91,12 +91,12 @@ class PointSticks(AxialStick):
 
     @property
     def parts(self) -> Sequence[PlanarStick]:
-        """The whole and the points."""
+        """The whole contact and its points."""
         return self.whole, *self.points
 
     @property
     def active(self) -> Sequence[PlanarStick]:
-        """The whole or the points."""
+        """The whole contact or its points."""
         return self.parts[:1] if self.whole.on_axis else self.points
 
     def use(self, locks: Sequence[int]) -> None:

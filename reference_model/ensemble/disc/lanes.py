@@ -86,7 +86,7 @@ AT_END = 1e-13
 """Scaled time that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
-"""Slip speeds, in units of g, below which the tolerance of slip is relative and slip may end, respectively."""
+"""Slip speeds in units of g: below the first the tolerance of slip is relative, below the second slip may end."""
 
 
 @written_out

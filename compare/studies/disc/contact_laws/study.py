@@ -75,7 +75,7 @@ def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
 
 
 def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
-    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the latter."""
+    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the rim's."""
     alphas = [math.atan2(1.0, ratio) for ratio in ratios]
     return [
         (cmath.rect(SPEED * math.cos(alpha), DIRECTION), sign * SPEED * math.sin(alpha))

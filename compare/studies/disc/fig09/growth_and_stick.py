@@ -39,8 +39,9 @@ FOLLOWED = (
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,
-    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. According to the paper, this "
-    "equilibrium is stable at every speed; only that of the pin is. The friction of a ring grows with its slip. "
+    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. According to the paper, "
+    f"this equilibrium is stable at every speed; only the equilibrium of the pin is. The friction of a "
+    f"ring grows with its slip. "
     f"If ω > k, friction drives the disc around by more than β damps. {FOLLOWED}",
     basis="reference",
     swept=("friction_force",),
@@ -112,8 +113,9 @@ REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force 
     "A disc stuck at 0.98 of the radius (9) turns with the master disc permanently",
     equation="(9)",
     resolution=1e-2,
-    note="After one revolution: displacement on the master disc relative to the radius, turn against it in rad, spin "
-    "against it relative to ω, and the number of slip phases. The holding force has the period of a "
+    note="After one revolution: displacement on the master disc relative to the radius, turn relative to the "
+    "master disc in rad, relative spin over ω, and the number of slip phases. The holding force has the "
+    "period of a "
     "revolution. Equation (9) uses the force that remains after the moment b(ω − Ω). Error: the change at a "
     "smaller tolerance, which reveals the creep of a law that only approximates stick.",
     basis="reference",

@@ -84,7 +84,7 @@ def rest_of(load: float) -> SpinningEquilibrium:
 
 
 def exact_motion(load: float, which: int | None) -> SpinningWhirl | SpinningEquilibrium:
-    """Return the whirl without offset of that number, or the equilibrium with the offset for None."""
+    """Return the whirl number ``which`` without offset, or for None the equilibrium with the offset."""
     return rest_of(load) if which is None else circle_of(load, which)
 
 

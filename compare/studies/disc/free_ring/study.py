@@ -340,7 +340,7 @@ THIN = 1e-3
     equation="(20)",
     resolution=1e-2,
     note="Final ratio of sliding to rim speed for an inner radius of 0.999 times the outer one. Model error: the "
-    "width over the radius; the radius of gyration differs from the outer one by half of it.",
+    "width over the radius; the radius of gyration differs from the outer radius by half of the width.",
 )
 def published_ratio_of_a_ring() -> Measured:
     return Measured(predicted=1.0, value=annulus_ratio(1.0 - THIN), error=1e-10, model=THIN, source=PUBLISHED)

@@ -54,7 +54,7 @@ DECAY = 1e-4
 """Range of slip in rad/s where that connector's friction falls from its static to its sliding value."""
 
 PUBLISHED_TOLERANCE, ACCUMULATED = 1e-6, 10.0
-"""Relative tolerance of DASSL in the published result, and assumed ratio of the motion's error to it."""
+"""Relative tolerance of DASSL in the published result, and assumed ratio of the motion's error to this tolerance."""
 
 
 def first_load(time: float) -> float:

@@ -256,7 +256,8 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
 
 
 @STUDY.claim(
-    "The stable set of the saddle-type orbit separates the starts of the equilibrium from those of the whirl",
+    "The stable set of the saddle-type orbit separates starts that lead to the equilibrium from starts that "
+    "lead to the whirl",
     note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting and cubic splines. Some starts "
     "end as if they were on the other side of the splines. For the farthest of these starts, shooting "
     "determines their side of the saddle's stable set. The claim fails if one of them ends on the other side.",

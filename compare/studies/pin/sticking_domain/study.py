@@ -74,8 +74,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is the relative error of the radii A. If a radius is missing, so is the vertex; it is open if
-    all missing radii are.
+    ``relative_error`` is the relative error of the radii A. If a radius is missing, the vertex is NaN;
+    its error is infinite if those of all missing radii are, else 0.
     """
 
     def found(values: FloatArray) -> float:

@@ -41,7 +41,7 @@ DEVIATION, DEVIATION_TIMES = 1e-3, np.linspace(0.0, 60.0, 301)
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)
-"""ω/k, also below 1, and β/(mk), to compare (14) to (16) with eigenvalues."""
+"""Values of ω/k, also below 1, and of β/(mk), for comparing (14) to (16) with eigenvalues."""
 
 
 def pin_at(speed: float, damping: float = CENTRED.damping) -> PinOnDisc:

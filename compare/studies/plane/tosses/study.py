@@ -25,7 +25,7 @@ SOURCE = "measurements of S. Pfrommer, M. Halm and M. Posa (2020), see slides.cs
 STUDY = Study.beside(__file__, "tosses", source=SOURCE, seconds=4.0, contact=True)
 
 SIGMAS = 2.0
-"""Standard errors of a mean that a claim allows, and those that exclude a load."""
+"""Numbers of standard errors of a mean that a claim allows, and that exclude a load."""
 
 EXCLUDED = 3.0
 
