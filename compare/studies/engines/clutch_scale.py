@@ -63,7 +63,7 @@ CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
 """Duration in s of this motion, and number of samples."""
 
 VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
-"""vx(0) in m/s; pins come to rest or reach the whirl."""
+"""Initial vx in m/s of pins that come to rest or reach the whirl."""
 
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 

@@ -35,7 +35,7 @@ CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
 LATEST, REVOLUTIONS = 1.1, 2.0
-"""Duration for a pin outside as a multiple of (7), and turns of a pin inside, two periods of the holding force."""
+"""Duration for a pin outside (9) as multiple of (7); turns for a pin inside (9): two periods of the holding force."""
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
