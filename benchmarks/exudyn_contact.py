@@ -3,11 +3,11 @@
 Run with ``python benchmarks/exudyn_contact.py``; prints tables. Each number is the least of several repetitions,
 interleaved so that other load affects all rows equally. Compare only numbers of one run.
 
-Calls of friction, in empty calls of a user function: two rotors on one axis 0.1, with a function of time 1.1, with
-static friction or a table 0.9; pin 1.1, six points 1.3, 24 points 1.4; Exudyn's built-in contact with a pin 1.1, six
-points 6.4, 24 points 26; ring 1.2, annulus 1.6, ring between spatial bodies 2.6; ring with Stribeck friction and a
-time-dependent load 1.7, compiled by numba 1.3; ring with a heat sensor 4.9, on two rotors 1.9, with an energy balance
-2.0; Exudyn's spring-damper 0.1, six rigid-body spring-dampers 4.1.
+Calls of friction, in empty calls of a user function: two rotors on one axis 0.1, with a function of time or static
+friction 1.9, with a table 2.3; pin 1.1, six points 1.3, 24 points 1.4; Exudyn's built-in contact with a pin 1.1, six
+points 6.4, 24 points 26; ring 1.2, annulus 1.6, ring between spatial bodies 2.6; ring with a load of time 2.3, with
+Stribeck friction too 3.4; ring with a heat sensor 4.9, on two rotors 1.9, with an energy balance 2.0; Exudyn's
+spring-damper 0.1, six rigid-body spring-dampers 4.1.
 
 Alternatives for the call, in the same unit: numba's dispatch by type, 1.9 for a ring; a C callback through ctypes,
 2.0 for a pin; a NumPy array in place of the list of forces, 0.15 more; Exudyn's symbolic functions, 1.0 for a pin,
@@ -41,8 +41,8 @@ from exudyn_models import (
 )
 from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, functions_on_axis
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
-from exudyn_models.forces.laws.calls import number_at
 from exudyn_models.forces.laws.places import ring_places, table_of
+from exudyn_models.forces.laws.tables import number_at
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
 
@@ -218,9 +218,6 @@ PLANAR: dict[str, AddContact] = {
     "ring, Stribeck and a load of time": lambda *nodes: ours(
         RING | {"friction_coefficient": stribeck}, load_of_time
     )(*nodes),
-    "the same, compiled by numba": lambda *nodes: ours(
-        RING | {"friction_coefficient": numba.njit(stribeck)}, numba.njit(constant_load)
-    )(*nodes),
     "ring, table over slip": ours(RING | {"friction_coefficient": TABLE}),
     "ring with a sensor of its heat": lambda *nodes: ours(RING)(*nodes).add_sensor("heat"),
     "annulus": ours(ANNULUS),
@@ -265,11 +262,6 @@ def fading(temperature: float) -> float:
 def load_of_time(time: float) -> float:
     """Return a load in N."""
     return FIG5.friction_force
-
-
-def constant_load(time: float) -> float:
-    """Return a load in N in a form that numba can compile."""
-    return 0.05
 
 
 AXIAL: dict[str, AddContact] = {

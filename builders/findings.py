@@ -18,20 +18,24 @@ import shutil
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
 from compare.report.matrix import WORST_FIRST, State
-from compare.report.numbers import error_text, unbroken, value_text
+from compare.report.numbers import error_text, value_text
 from compare.report.quotes import Nature, parts, quote
 from compare.report.results_json import read_results
+from reference_model.systems import UNITS
 
 ROOT = Path(__file__).parents[1]
 
 QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
+
+WITH_UNIT = re.compile(QUOTED.pattern + r"( (?:N m s/rad|mm|rpm|N|m|s|%)(?!\w))?")
+"""A number with its unit, which the link to its claim includes: a search for "3145 rpm" finds it."""
 
 CLAIMS = "#claims"
 """Place of the quoted claims in ``builders/findings.md``."""
@@ -107,12 +111,13 @@ def kept(root: Path = ROOT) -> dict[str, Number]:
 def findings(numbers: Mapping[str, Number], root: Path = ROOT) -> str:
     """Return the text of docs/findings.md."""
     template = (root / "builders" / "findings.md").read_text(encoding="utf-8")
-    linked = QUOTED.sub(lambda found: _linked(numbers[found[1]]), template)
-    return unbroken(linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template)))))
+    linked = WITH_UNIT.sub(lambda found: _linked(numbers[found[1]], found[2] or ""), template)
+    return linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template))))
 
 
-def _linked(number: Number) -> str:
-    return f"[{number.text}](#{anchor(number.claim)})" if number.nature == "measured" else number.text
+def _linked(number: Number, unit: str) -> str:
+    text = f"{number.text}{unit}"
+    return f"[{text}](#{anchor(number.claim)})" if number.nature == "measured" else text
 
 
 def anchor(claim: str) -> str:
@@ -128,9 +133,17 @@ def _claims(numbers: Mapping[str, Number], names: Iterable[str]) -> Iterator[str
         if number.nature == "measured":
             quoted.setdefault(number.claim, {})[words] = number
     for claim, found in quoted.items():
-        values = [f"- {words}: {_with_error(number)}" for words, number in found.items()]
+        values = [
+            f"- {words.replace('_', ' ')}: {_with_error(replace(number, unit=number.unit or _unit(words)))}"
+            for words, number in found.items()
+        ]
         sentence = next(iter(found.values())).sentence
         yield "\n".join([f"### {claim}", "", f"{sentence}.", "", *values])
+
+
+def _unit(words: str) -> str:
+    """Return the unit of the parameter that ``words`` end with, or ""."""
+    return UNITS.get(words.split()[-1], "")
 
 
 def _with_error(number: Number) -> str:

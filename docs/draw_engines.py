@@ -1,75 +1,135 @@
-"""Draw the matrix of engines, the figure in README, from the recordings: ``python docs/draw_engines.py``.
+"""Show the recorded engines: ``python docs/draw_engines.py`` draws ``engines.png`` and writes the table in README.
 
-The metadata of ``engines.png`` contains its data, so a test can detect an outdated figure.
+The picture contains all settings, the table one row for each engine. The metadata of the picture contains its data,
+so a test can detect an outdated one.
 """
 
 import json
-import textwrap
+import math
+import re
 from pathlib import Path
 
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from compare.diagnosis.laws import CONE
+from compare.claims import Recorded
+from compare.claims.claim import Verdict
+from compare.diagnosis.row import Row
 from compare.diagnosis.run import row_of
-from compare.foreign import recordings
+from compare.foreign import CASES, recordings
 from compare.output.figures import paper_style
+from compare.report.at_a_glance import best_of
+from compare.report.matrix import state_of
+from compare.report.numbers import error_text
+from compare.studies.engines.foreign_engines.theory import recorded_claims
 
-PICTURE = Path(__file__).with_name("engines.png")
-COLUMNS = {
-    "slip": "pin slides",
-    "stick-slip": "pin sticks and slips",
-    "whirl": "pin whirls",
-    "stuck": "pin sticks permanently",
-    "release": "pin releases",
-    "disc": "disc on six points",
-}
-"""Column titles of the motions of ``compare.foreign``."""
-
-LAW = "friction law"
+PICTURE, README = Path(__file__).with_name("engines.png"), Path(__file__).parents[1] / "README.md"
+PLACE = re.compile(r"(?s)(?<=<!-- engines -->\n\n).*?(?=\n\n<!-- end -->)")
 COLOURS = {"✓": "#bfe3cf", "?": "#fff3bf", "✗": "#e0796b", "": "white"}
 """From light to dark, so that they also differ in grey."""
 
+ENGINES = tuple((row_of(one), recorded_claims(one)) for one in recordings())  # ours first
 
-def cells():
-    """Return the mark and the text of each column, by engine and setting."""
-    table = {}
-    for recording in recordings():  # ours first
-        row = row_of(recording)
-        found = table[row.engine] = {}
+
+def law_of(row: Row) -> str:
+    """Return the measured friction law in a word or two."""
+    law = row.law
+    if law is None:
+        return "not measured"
+    if not math.isnan(law.per_step):
+        return "impulse per step"
+    if not law.sure:
+        return "unclear: creeps" if row.creep is not None and row.creep.speed > 0.0 else "unclear"
+    return law.shape.split()[0]
+
+
+def cells() -> dict[str, dict[str, list[str]]]:
+    """Return mark, error, order and cost of each motion by engine and setting, and the friction law."""
+    table: dict[str, dict[str, list[str]]] = {}
+    for row, recorded in ENGINES:
+        found = table[row.engine] = {"law": ["", law_of(row), "", ""]}
         for name, motion in row.motions.items():
-            mark = "✗" if not motion.converges else "✓" if motion.conclusive else "?"
-            found[name] = [mark, f"{motion.error:.0e}"]
-        if row.law is not None and row.law.sure:
-            found[LAW] = ["✓" if row.law.shape == CONE else "✗", row.law.shape.partition(":")[0].split()[0]]
+            order = f"order {round(motion.order, 1) + 0.0:.1f}" if math.isfinite(motion.order) else ""
+            found[name] = [motion.mark, f"{motion.error:.0e}", order, recorded.costs[CASES[name].sentence]]
     return table
 
 
-def drawn_from():
+def drawn_from() -> str:
     """Return the contents of the figure as one line of JSON."""
     return json.dumps(cells(), ensure_ascii=False)
 
 
-def draw():
-    """Return the figure."""
+def draw() -> Figure:
+    """Return the figure of all settings."""
     table = cells()
-    names = [*COLUMNS, LAW]
-    figure = Figure(figsize=(9.0, 0.235 * len(table) + 1.0), layout="constrained")
+    names = [*CASES, "law"]
+    figure = Figure(figsize=(11.5, 0.36 * len(table) + 0.8), layout="constrained")
     panel = figure.subplots()
     for line, (engine, found) in enumerate(table.items()):
         for column, name in enumerate(names):
-            mark, text = found.get(name, ["", ""])
+            mark, error, order, cost = found.get(name, ["", "not simulated", "", ""])
             panel.fill_between([column, column + 1], line, line + 1, color=COLOURS[mark], edgecolor="white")
-            panel.text(column + 0.12, line + 0.5, mark, va="center", fontfamily="DejaVu Sans", fontsize=9)
-            panel.text(column + 0.94, line + 0.5, text, va="center", ha="right", fontsize=9.5)
+            panel.text(column + 0.06, line + 0.33, mark, va="center", fontfamily="DejaVu Sans", fontsize=9)
+            panel.text(column + 0.2 * bool(mark) + 0.06, line + 0.36, error, va="center", fontsize=10)
+            panel.text(column + 0.96, line + 0.36, order, va="center", ha="right", fontsize=8, color="0.25")
+            panel.text(column + 0.06, line + 0.77, _short(cost), va="center", fontsize=8, color="0.25")
         panel.text(-0.06, line + 0.5, engine, va="center", ha="right", fontsize=10)
-    for column, name in enumerate(names):
-        label = textwrap.fill(COLUMNS.get(name, name), 12)
-        panel.text(column + 0.5, -0.2, label, va="bottom", ha="center", fontsize=10)
-    panel.set(xlim=(-1.75, len(names)), ylim=(len(table), -1.3))
+    for column, case in enumerate(CASES.values()):
+        panel.text(column + 0.5, -0.75, case.name, va="bottom", ha="center", fontsize=10.5)
+        panel.text(column + 0.5, -0.2, case.truth, va="bottom", ha="center", fontsize=9, color="0.25")
+    panel.text(len(CASES) + 0.06, -0.75, "friction law", va="bottom", fontsize=10.5)
+    panel.set(xlim=(-1.6, len(names)), ylim=(len(table), -1.6))
     panel.axis("off")
     return figure
 
 
+def _short(cost: str) -> str:
+    return cost.replace(" steps per natural period", "/T").replace("a tolerance of", "tol.")
+
+
+def _said(recorded: Recorded) -> str:
+    """Return the mark of a setting, with the number of motions that do not agree."""
+    marks = [state_of(claim).symbol for claim in recorded.claims]
+    bad = [f"{mark} {marks.count(mark)}" for mark in "✗?" if mark in marks]
+    return f"{', '.join(bad)} of {len(marks)}" if bad else "✓"
+
+
+def _why(recorded: Recorded) -> list[str]:
+    """Return the main clauses of the reasons of ✗, or of ? if there is no ✗."""
+    by_mark: dict[str, list[str]] = {"✗": [], "?": []}
+    for claim in recorded.claims:
+        why = re.split(r" with | under |, ", recorded.reasons.get(claim.sentence, ""))[0]
+        by_mark.get(state_of(claim).symbol, []).append(why)
+    return list(dict.fromkeys(by_mark["✗"] or by_mark["?"]))
+
+
+def table() -> str:
+    """Return the table of README, one row for each engine."""
+    found: dict[str, dict[Recorded, Row]] = {}
+    for row, recorded in ENGINES:
+        found.setdefault(recorded.engine, {})[recorded] = row
+    lines = []
+    for engine, rows in found.items():
+        best, shipped = best_of(list(rows)), next(one for one in rows if one.shipped)
+        laws = " → ".join(dict.fromkeys((law_of(rows[shipped]), law_of(rows[best]))))
+        agreeing = [one for one in best.claims if one.verdict is Verdict.AGREES]
+        worst = max(agreeing, key=lambda one: float(one.measured))
+        error = f"{error_text(float(worst.measured), 1)} m, {_short(best.costs[worst.sentence])}"
+        why = "; ".join(
+            [f"as shipped: {one}" for one in _why(shipped)[:1] if one not in _why(best)] + _why(best)
+        )
+        setting = f"{_said(best)} {best.setting}".strip()
+        lines.append(f"| {engine} | {_said(shipped)} | {setting} | {laws} | {error} | {why} |")
+    head = (
+        "| engine | as shipped | best setting | friction law | largest error there | why not ✓ |\n"
+        + 6 * "|---"
+        + "|"
+    )
+    others = sorted(lines[3:], key=lambda line: "✓?✗".index(line.split("| ")[3][0]))
+    return "\n".join([head, *lines[:3], *others])
+
+
 if __name__ == "__main__":
-    with paper_style():
+    with paper_style(), rc_context({"font.family": ["STIXGeneral", "DejaVu Sans"]}):
         draw().savefig(PICTURE, dpi=110, metadata={"Description": drawn_from(), "Software": None})
+    README.write_text(PLACE.sub(lambda _: table(), README.read_text("utf-8")), "utf-8")

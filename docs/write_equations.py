@@ -214,7 +214,8 @@ def text():
         "This page shows each equation of the paper in our notation, the functions that compute it and claims about",
         "it. The [glossary](glossary.md#symbols) explains the symbols. `friction-discs report --claim ID` measures a",
         'claim. To find more claims about (16), search the report for "eq. 16". No claim covers (2), (24) and (25),',
-        "which define coordinates and abbreviations. `python docs/write_equations.py` writes this page.",
+        "which define coordinates and abbreviations. [`plain.py`](../reference_model/plain.py) contains the",
+        "equations of motion as printed, in 98 lines. `python docs/write_equations.py` writes this page.",
     ]
     by_function, by_claim = functions(), claims()
     for number, about in EQUATIONS.items():

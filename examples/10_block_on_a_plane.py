@@ -42,21 +42,24 @@ for engine in (cone, box):
     engine.kinds, engine.nonlinear, engine.step = ("block",), False, 1e-3  # s
 
 
+def slide(law, angle):
+    """Return the motion of a block of 1 kg that starts at 1 m/s in the direction ``angle`` against μN = 1 N."""
+    from reference_model import PinOnDisc
+
+    block = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
+    return law(block, [0.0, 0.0, np.cos(angle), np.sin(angle)], np.linspace(0.0, 1.5, 31), step=0.01)
+
+
 def draw(path):
     """Draw the paths of a block that starts in six directions, by both laws."""
     from matplotlib.figure import Figure
 
-    from reference_model import PinOnDisc
-
-    block = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
-    times = np.linspace(0.0, 1.5, 31)
     figure = Figure(figsize=(4.0, 3.4), layout="constrained")
     panel = figure.subplots()
     for name, law, style in (("cone", cone, "C0-"), ("box", box, "C3--")):
         for number, angle in enumerate(np.radians(np.arange(0, 91, 18))):
-            motion = law(block, [0.0, 0.0, np.cos(angle), np.sin(angle)], times, step=0.01)
             panel.plot(
-                *motion.states[:, :2].T,
+                *slide(law, angle).states[:, :2].T,
                 style,
                 marker="o",
                 markevery=[-1],
@@ -68,5 +71,9 @@ def draw(path):
 
 
 if __name__ == "__main__":
+    for name, law in (("cone", cone), ("box", box)):
+        print(
+            f"{name}: a start at 45° ends after {np.hypot(*slide(law, np.pi / 4).at_end[:2]):.3f} m (Coulomb: 0.5 m)"
+        )
     if len(sys.argv) > 1:
         draw(sys.argv[1])

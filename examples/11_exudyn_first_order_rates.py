@@ -49,10 +49,13 @@ def draw(path):
     """Draw the final value with both iterations next to the expected one."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(4.0, 2.2), layout="constrained")
+    figure = Figure(figsize=(5.2, 2.0), layout="constrained")
     panel = figure.subplots()
-    panel.barh(("modified Newton", "full Newton", "expected"), (obtained(True), obtained(False), expected()))
-    panel.set(xlabel="final x, starting from 1")
+    finals = (obtained(True), obtained(False), expected())
+    bars = panel.barh(("modified Newton", "full Newton", "expected"), finals, color=("C3", "C2", "0.5"))
+    panel.bar_label(bars, fmt="%.3f", padding=3)
+    panel.axvline(0.0, color="k", linewidth=0.8)
+    panel.set(xlabel=f"x after {STEPS * STEP:g} s (dimensionless); it decays from 1", xlim=(-2.6, 0.5))
     figure.savefig(path, dpi=80)
 
 

@@ -26,12 +26,16 @@ RADIUS, OFFSET = 0.1, 0.04  # m
 container = exu.SystemContainer()
 mbs = container.AddSystem()
 plate = graphics.Cylinder([0.0, 0.0, -0.02], [0.0, 0.0, 0.01], 0.2, graphics.color.steelblue, nTiles=64)
-mbs.AddObject(ObjectGround(visualization=VObjectGround(graphicsData=[plate])))
+start = graphics.Cylinder(
+    [OFFSET, 0.0, 0.0], [0.0, 0.0, 0.05], 0.004, graphics.color.red
+)  # of the disc's centre
+mbs.AddObject(ObjectGround(visualization=VObjectGround(graphicsData=[plate, start])))
 flywheel = mbs.AddNode(Node1D(initialVelocities=[30.0]))
 mbs.AddObject(ObjectRotationalMass1D(nodeNumber=flywheel, inertia=1e3))
 disc = mbs.AddNode(NodeRigidBody2D(initialCoordinates=[OFFSET, 0.0, 0.0]))
 drawn = [
     graphics.Cylinder([0.0, 0.0, 0.0], [0.0, 0.0, 0.02], RADIUS, graphics.color.orange, nTiles=64),
+    graphics.Cylinder([0.0, 0.0, 0.02], [0.0, 0.0, 0.04], 0.006, graphics.color.black),  # its centre
     graphics.Brick(
         [RADIUS / 2.0, 0.0, 0.022], [RADIUS, 0.01, 0.005], graphics.color.black
     ),  # shows the rotation
@@ -71,6 +75,7 @@ def render(path):
     look.exportImages.saveImageSingleFile = True
     look.view0.window.renderWindowSize = [640, 400]
     look.general.autoFitScene = False
+    look.connectors.show = False
     look.openGL.advanced.initialZoom = 0.25
     look.openGL.advanced.initialModelRotation = RotationMatrixX(-0.8).tolist()  # rad, a view at an angle
     container.renderer.Start()

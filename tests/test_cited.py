@@ -36,5 +36,6 @@ def test_unknown_facts_are_left_out(cited, monkeypatch):
     monkeypatch.setitem(names, "date", lambda: "")
     monkeypatch.setitem(names, "commit", lambda: "")
     assert not any(name in cited["bibtex"]().partition("\n\n")[0] for name in ("year =", "date =", "note ="))
+    assert f"```bibtex\n{cited['bibtex']()}```" in (ROOT / "docs" / "cite.md").read_text(encoding="utf-8")
     with pytest.raises(ValueError, match="no field 'doi'"):
         cited["field"]("doi")

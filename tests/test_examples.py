@@ -60,6 +60,20 @@ def test_a_block_stops_straight_ahead_by_a_cone_and_too_soon_by_a_box():
     assert stops[1] == pytest.approx([0.25, 0.25, 0.0, 0.0], abs=1e-3)  # each axis separately
 
 
+@pytest.mark.parametrize(
+    ("name", "printed"),
+    [
+        ("05_your_own_engine.py", r"largest error at a tolerance of 1e-8: \de-0[789] m or m/s\n"),
+        ("07_engine_under_pytest.py", r"Euler: error \de-0[123] .*\nRunge–Kutta: error \de-(?:0[6-9]|1\d) "),
+        ("10_block_on_a_plane.py", r"cone: .* 0\.500 m \(Coulomb: 0\.5 m\)\nbox: .* 0\.35\d m "),
+    ],
+)
+def test_an_example_prints_the_number_that_it_is_about(name, printed, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", [name])
+    runpy.run_path(str(ROOT / "examples" / name), run_name="__main__")
+    assert re.match(printed, capsys.readouterr().out)
+
+
 def test_exudyn_keeps_the_rates_of_first_order_with_full_newton_only():
     example = run("11_exudyn_first_order_rates.py")
     right = example["expected"]()

@@ -42,13 +42,14 @@ class Validation:
     count: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Recorded:
     """Recorded results for one setting of an engine, not measured in a run.
 
     - ``setting``, ``date``: name of the setting ("" if there is only one), and date of the recording.
-    - ``own``: False if the friction is a user-defined force.
-    - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
+    - ``own``, ``shipped``: False if the friction is a user-defined force; True if all settings are the defaults.
+    - ``cases``: name of the motion, and the source of its exact course, by the sentence of each claim.
+    - ``reasons``, ``costs``: why a claim does not agree, and the step or tolerance and time of its run, by sentence.
     - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
     - ``advice``: refinement for a small error, or the error of the finest run, as a clause.
     - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
@@ -60,7 +61,10 @@ class Recorded:
     date: str
     claims: tuple[Claim, ...]
     own: bool = True
+    shipped: bool = False
     cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    reasons: Mapping[str, str] = field(default_factory=dict)
+    costs: Mapping[str, str] = field(default_factory=dict)
     law: str = ""
     says: str = ""
     adapter: str = ""

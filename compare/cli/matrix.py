@@ -179,18 +179,18 @@ def _print_table(rows: Sequence[Row]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from compare.diagnosis.findings import MOTIONS
+    from compare.diagnosis.findings import MOTIONS, heading
 
     names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
     if not names:
         return
-    table = Table("engine", *names, highlight=False)
+    table = Table("engine", *map(heading, names), highlight=False)
     for row in rows:
         table.add_row(row.engine, *(_cell(row, name) for name in names))
     Console(highlight=False).print(table)
     print(
-        "Error in m ± the engine's own estimate. ✓ the estimate explains the error; ✗ it does not; ? the estimate is "
-        "too large to distinguish friction laws; ! no result"
+        "Largest error in m ± its bar, estimated from the changes between refinements. ✓ the bar explains the error; "
+        "✗ it does not; ? the bar exceeds a tenth of the effect of another friction law; ! no result"
     )
 
 
@@ -198,5 +198,4 @@ def _cell(row: Row, name: str) -> str:
     if name not in row.motions:
         return "!" if name in row.gaps else ""
     motion = row.motions[name]
-    mark = "✗" if not motion.converges else "✓" if motion.conclusive else "?"
-    return f"{mark} {motion.error:.0e} ± {motion.estimate:.0e}"
+    return f"{motion.mark} {motion.error:.0e} ± {motion.estimate:.0e}"

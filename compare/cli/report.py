@@ -74,8 +74,8 @@ Limit = Annotated[
     typer.Option(
         "--study-limit",
         metavar="SECONDS",
-        help="Limit of processor time in s for one study of one engine. By default 17 for your own engine at the "
-        "quick level, which does not attempt claims that would take longer; else no limit.",
+        help="Limit of processor time in s for one study of one engine. By default 85 for your own engine at the "
+        "quick level, which leaves out claims that need too many steps; else no limit.",
         parser=positive("study-limit", "s"),
         show_default=False,
     ),

@@ -32,11 +32,16 @@ HELD = 0.05  # a block is held if its mean speed is below this share of a Coulom
 MOST_HELD, BISECTIONS = 32.0, 20
 
 RING: dict[str, Any] = {
-    "title": "a disc on a ring",
+    "name": "disc on a ring",
     "sentence": "A ring follows Coulomb's law",
     "system": FIG11,
 }
 MOTIONS = CASES | {"ring": replace(CASES["disc"], **RING)}
+
+
+def heading(part: str) -> str:
+    """Return the name of a motion, or that of another part unchanged."""
+    return MOTIONS[part].name if part in MOTIONS else part
 
 
 @dataclass(frozen=True)
@@ -130,6 +135,11 @@ class Motion:
     def conclusive(self) -> bool:
         """True if the estimate excludes another law."""
         return self.estimate <= self.resolution
+
+    @property
+    def mark(self) -> str:
+        """Mark of the verdict, as in the report."""
+        return "✗" if not self.converges else "✓" if self.conclusive else "?"
 
 
 Part = (

@@ -16,7 +16,7 @@ from compare.diagnosis.causes.acting import acting
 from compare.diagnosis.causes.course import Course, beginning_of, change_of
 from compare.diagnosis.causes.output import Output, flaw_of
 from compare.diagnosis.causes.patch import INERTIA, Patch, law_of
-from compare.diagnosis.findings import MOTIONS, PROBES, Creep, History, Lag, Motion, Repeat, Shares
+from compare.diagnosis.findings import MOTIONS, PROBES, Creep, History, Lag, Motion, Repeat, Shares, heading
 from compare.diagnosis.joint_probes import Joint
 from compare.diagnosis.ladder import HALVED, RUNGS
 from compare.diagnosis.laws import CONE, DISTINCT, Friction
@@ -161,6 +161,18 @@ class Row:
         off = 0.0 if law is None else max(abs(law.strength - 1.0), law.misfit, abs(law.angle))
         return off <= DISTINCT * self._differs * SPEED / (FRICTION * SLIDES_FOR)
 
+    def reason(self, name: str) -> str:
+        """Return why the motion ``name`` does not agree, as a clause; "" if it does."""
+        motion = self.motions[name]
+        of_disc = [one.text for one in self.remarks if one.wrong and one.about == DISCS and name == "disc"]
+        others = [one.text for one in self.remarks if one.wrong and one.about != DISCS]
+        found = [*of_disc, *others] if motion.mark == "✗" else of_disc
+        causes = [f"{text[0].lower()}{text[1:]}".rstrip(".").partition(": ")[0] for text in found]
+        if motion.mark == "?":
+            bar, least = error_text(motion.estimate), error_text(motion.resolution)
+            causes.append(f"its error bar of {bar} m exceeds {least} m, a tenth of the effect of another law")
+        return causes[0] if motion.mark != "✓" else ""
+
     @property
     def sentences(self) -> tuple[str, ...]:
         """Diagnosis in a few sentences, the verdict first."""
@@ -263,7 +275,7 @@ def drawn(rows: Sequence[Row]) -> Figure:
                 panel.semilogy(rungs, np.maximum(errors, LEAST), marker=marker, label=row.engine)
         panel.axhline(MOTIONS[name].resolution, color="0.6", linewidth=0.8, linestyle=":")
         panel.set(
-            title=name, xticks=range(1, RUNGS + 1), xlabel="rung (finer to the right)", ylabel="error in m"
+            title=heading(name), xticks=range(1, RUNGS + 1), xlabel="refinement", ylabel="largest error in m"
         )
     for panel in panels[len(names) :]:
         panel.set_visible(False)

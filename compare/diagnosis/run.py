@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import is_dataclass, replace
 from typing import Any, NamedTuple
 
 from compare.claims.as_json import from_json
@@ -201,7 +201,10 @@ def row_of(recording: Recording) -> Row:
     """Return the row of a recording."""
     step = recording.step
     motions = {name: _motion(runs, name, by_step=step is not None) for name, runs in recording.runs.items()}
-    probes = {name: from_json(PROBES[name], content) for name, content in recording.probes.items()}
+    probes: dict[str, Any] = {
+        name: from_json(PROBES[name], content) if is_dataclass(PROBES[name]) else content
+        for name, content in recording.probes.items()
+    }
     version = f"{recording.version}, recorded on {recording.recorded}"
     return Row(recording.name, version, step or math.nan, motions=motions, **probes)
 

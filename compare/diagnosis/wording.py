@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.diagnosis.findings import LATER, MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
+from compare.diagnosis.findings import LATER, MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares, heading
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, FITS, NEAR, NOTHING, Friction
 from compare.diagnosis.probes import FAR, NONLINEAR, SETTLES_FOR, SLIDE, SLIDES_FOR, SPEED, SUPPORTS
 from compare.diagnosis.scaling import MISSING, Scales, blind, deviation
@@ -63,7 +63,7 @@ def size_text(share: float, error: float | None = None) -> str:
 def of_gaps(beginning: str, gaps: Mapping[str, str], *, wrong: bool) -> Iterator[Remark]:
     """Yield each reason of ``gaps``, which has the names of parts as keys."""
     for reason in dict.fromkeys(gaps.values()):
-        names = ", ".join(name for name, why in gaps.items() if why == reason)
+        names = ", ".join(heading(name) for name, why in gaps.items() if why == reason)
         yield Remark(f"{beginning} {names}: {reason}.", wrong, FAILED)
 
 
@@ -310,7 +310,7 @@ def of_moments(moments: Shares, law: Friction | None) -> Iterator[Remark]:
         wrong = beyond[:, column] & (off[:, column] > ALIKE * largest)
         if np.any(wrong):
             worst = float(moments.shares[np.argmax(np.where(wrong, off[:, column], 0.0)), column])
-            yield Remark(f"The friction {name} on a disc is {size_text(worst)}.", True, MOTION)
+            yield Remark(f"The friction {name} on a disc is {size_text(worst)}.", True, DISCS)
 
 
 def of_lag(lag: Lag, step: float, least: float) -> Iterator[Remark]:
@@ -336,9 +336,9 @@ def of_motions(motions: dict[str, Motion], refined: str) -> Iterator[Remark]:
         yield Remark(
             f"Errors are of order {least}" + f" to {most}" * (least != most) + f" in the {refined}.", False
         )
-    open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
+    open_ = [heading(name) for name, motion in motions.items() if motion.mark == "?"]
     if open_:
-        yield Remark(f"Too coarse to tell: {', '.join(open_)}.", False)
+        yield Remark(f"The error bar could hide another friction law: {', '.join(open_)}.", False)
     if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
         yield Remark(
             f"Results do not change with the {refined}, so an error cannot be distinguished from another law.",
@@ -346,7 +346,7 @@ def of_motions(motions: dict[str, Motion], refined: str) -> Iterator[Remark]:
             MOTION,
         )
     elif others:
-        off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
+        off = ", ".join(f"{heading(name)} {error_text(motion.error)} m" for name, motion in others.items())
         if all(motion.error < IMPRECISE * motion.resolution for motion in others.values()):
             yield Remark(f"Errors remain at any {refined}: {off}; declare the engine's precision.", None)
             return

@@ -26,7 +26,7 @@ Quantity = NDArray[np.complex128]
 class Case:
     """A motion and the quantity that is compared, complex numbers in m."""
 
-    title: str
+    name: str  # heading of a column
     sentence: str  # the claim's
     system: System
     start: tuple[float, ...]
@@ -45,6 +45,11 @@ class Case:
     def kind(self) -> Kind:
         """Source of the exact quantity."""
         return "formula" if self.formula else "trajectory"
+
+    @property
+    def truth(self) -> str:
+        """Source of the exact motion in words."""
+        return f"closed form {self.equation}" if self.formula else "our reference"
 
     def exact(self) -> Quantity:
         """Return the exact quantity."""
@@ -89,7 +94,7 @@ def _exact_stuck() -> Quantity:
 
 CASES = {
     "slip": Case(
-        title="a pin that slides",
+        name="pin slides",
         sentence="A pin that slides follows Coulomb's law",
         system=FIG5,
         start=_ON_THE_WHIRL,
@@ -98,7 +103,7 @@ CASES = {
         resolution=0.025,
     ),
     "stick-slip": Case(
-        title="a pin that sticks nine times on its way to the whirl",
+        name="pin sticks 9 times",
         sentence="A pin that sticks nine times follows Coulomb's law",
         system=FIG5,
         start=FIG5_STARTS["whirl"],
@@ -107,7 +112,7 @@ CASES = {
         resolution=0.08,
     ),
     "whirl": Case(
-        title="radius of the whirl without offset, (11)",
+        name="pin whirls",
         sentence="The whirl's radius is that of (11)",
         system=_CENTRED,
         start=_ON_THE_WHIRL,
@@ -118,7 +123,7 @@ CASES = {
         equation="(11)",
     ),
     "stuck": Case(
-        title="a pin that sticks all the time",
+        name="pin stays stuck",
         sentence="A pin that sticks turns with the disc",
         system=_CENTRED,
         start=_ON_THE_DISC,
@@ -129,7 +134,7 @@ CASES = {
         equation="(6)",
     ),
     "release": Case(
-        title="a pin that sticks for 1.5 s and is then released",
+        name="pin is released",
         sentence="The release of a pin follows Coulomb's law",
         system=FIG5,
         start=_UNTIL_RELEASE,
@@ -138,7 +143,7 @@ CASES = {
         resolution=3.5e-3,
     ),
     "disc": Case(
-        title="a disc on six points",
+        name="disc on 6 points",
         sentence="A disc on six points follows Coulomb's law",
         system=replace(FIG11, contact_points=6),
         start=(0.05, 0.0, 0.0, 0.0, 0.05, 1.3),

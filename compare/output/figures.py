@@ -163,16 +163,6 @@ def points(engine: str, label: str | None = None, **changes: Any) -> dict[str, A
     } | changes
 
 
-def beside(panel: Axes, place: float) -> Any:
-    """Return the transform that shifts marks to the right by ``place`` mark widths.
-
-    It keeps coinciding marks visible; mention it in the caption.
-    """
-    from matplotlib.transforms import offset_copy
-
-    return offset_copy(panel.transData, panel.figure, x=7.0 * place, units="points")  # type: ignore[arg-type]
-
-
 def engines_in(data: Iterable[str]) -> tuple[str, ...]:
     """Return the engines among the keys of ``data``: reference, exudyn, then others by name."""
     names = [name for name in data if name != "theory"]

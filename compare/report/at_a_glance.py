@@ -8,7 +8,6 @@ from urllib.parse import quote
 from compare.claims.claim import GRADES, Claim, Verdict
 from compare.claims.validation import Recorded
 from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, State
-from compare.report.numbers import error_text
 from compare.run.runner import Run
 
 OTHER_LAW = 10.0
@@ -36,12 +35,13 @@ class Glance:
 
 
 def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
-    """Return the engines of this run, then the recorded engines at their best settings."""
+    """Return the engines that this run measured, then the recorded engines at their best settings."""
     recorded = matrix.recorded[0] if matrix.recorded else None
-    found = [_measured(run, matrix, engine, recorded) for engine in run.engines]
+    known = {*matrix.columns, *(recorded.by_engine if recorded is not None else ())}
+    found = [_measured(run, matrix, engine, recorded) for engine in run.engines if engine in known]
     if recorded is not None:
         others = {
-            engine: _best(settings)
+            engine: best_of(settings)
             for engine, settings in recorded.by_engine.items()
             if engine not in run.engines
         }
@@ -53,33 +53,14 @@ def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
 _RANKS = [grade.value for grade in GRADES] + [ROUGH, OPEN, DIFFERS]
 
 
-def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
-    """Return a heading for each recorded motion."""
-    return tuple(_case(recorded.settings[0], claim) for claim in recorded.claims)
+def cases(recorded: RecordedMatrix) -> dict[str, str]:
+    """Return the name of each recorded motion, and the source of its exact course."""
+    setting = recorded.settings[0]
+    return {_case(setting, one): setting.cases.get(one.sentence, ("", ""))[1] for one in recorded.claims}
 
 
 def _case(setting: Recorded, claim: Claim) -> str:
     return setting.cases.get(claim.sentence, (claim.sentence, ""))[0]
-
-
-def contrast(found: Sequence[Glance]) -> str:
-    """Return an example of a small error that differs and a larger error that agrees, or ""."""
-    errors = {
-        state: [
-            (float(cell.claims[0].difference.max()), one.engine)
-            for one in found
-            for cell in one.cells
-            if cell is not None and cell.state is state
-        ]
-        for state in (State.DIFFERS, State.AGREES)
-    }
-    if not (errors[State.DIFFERS] and errors[State.AGREES]):
-        return ""
-    small, large = min(errors[State.DIFFERS]), max(errors[State.AGREES])
-    if small >= large:
-        return ""
-    texts = [f"{error_text(size, 1)} m of {engine}" for size, engine in (small, large)]
-    return f"For example, the {texts[0]} do not fall with the step, but the {texts[1]} do."
 
 
 def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | None) -> Glance:
@@ -129,7 +110,7 @@ GAPS = {
 """Verbs for one check and for several checks without agreement."""
 
 
-def _best(settings: Sequence[Recorded]) -> Recorded:
+def best_of(settings: Sequence[Recorded]) -> Recorded:
     """Return the setting with the fewest claims that do not agree; among several, with the most agreements."""
 
     def badness(setting: Recorded) -> tuple[int, int, float]:
@@ -146,8 +127,9 @@ def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
     if best.advice:
         others = any(claim.verdict is Verdict.DIFFERS for claim in best.claims)
         sentences.append(f"in the other motions, {best.advice}" if others else best.advice)
-    if coarse := [_case(best, one) for one in best.claims if one.verdict is Verdict.INCONCLUSIVE]:
-        sentences.append(f"the runs of {_quoted(coarse)} are too coarse to decide")
+    for claim in best.claims:
+        if claim.verdict is Verdict.INCONCLUSIVE:
+            sentences.append(f"“{_case(best, claim)}” is undecided: {best.reasons.get(claim.sentence, '')}")
     if lacking := [name for name, cell in zip(cases(recorded), cells, strict=True) if cell is None]:
         sentences.append(f"we did not simulate {_quoted(lacking)}")
     avoided: dict[tuple[str, ...], list[str]] = {}
@@ -185,7 +167,7 @@ def _judged(setting: Recorded) -> tuple[str, ...]:
     wrong = [_case(setting, claim) for claim in setting.claims if claim.verdict is Verdict.DIFFERS]
     if not wrong:
         agrees = any(claim.verdict is Verdict.AGREES for claim in setting.claims)
-        right = "Coulomb friction is correct, and errors fall with the step"
+        right = "friction is Coulomb's, and the error decreases as the step is refined"
         return (right if agrees else "the errors are too large to decide",)
     total = len(setting.claims)
     share = f"all {total}" if 1 < len(wrong) == total else f"{len(wrong)} of {total}"
@@ -194,7 +176,9 @@ def _judged(setting: Recorded) -> tuple[str, ...]:
     off = f"the radius of the whirl is {100.0 * setting.whirl:.0f} % off"
     whirl = f", and {off}" if setting.whirl > LEAST_SHARE else ""
     if setting.law in ("", CONE):
-        return (f"{text} at any step{whirl}",)
+        differing = (claim.sentence for claim in setting.claims if claim.verdict is Verdict.DIFFERS)
+        reasons = dict.fromkeys(filter(None, (setting.reasons.get(one) for one in differing)))
+        return (f"{text} at any step{whirl}", *reasons)
     return f"a {setting.law} replaces the friction cone", f"at any step, {text}{whirl}"
 
 

@@ -74,6 +74,7 @@ class Cell:
     reason: str = ""
     evidence: Evidence | Literal[""] = ""
     implied_by: str = ""
+    cost: str = ""  # step or tolerance, and time, of a recorded run
 
     @property
     def number(self) -> str:
@@ -156,7 +157,14 @@ class RecordedMatrix:
 
     def cells(self, setting: Recorded) -> tuple[Cell | None, ...]:
         """Return the cells of a row in the order of ``claims``; None if not simulated."""
-        found = {claim.sentence: _cell([claim]) for claim in setting.claims}
+        found = {
+            one.sentence: replace(
+                _cell([one]),
+                reason=setting.reasons.get(one.sentence, ""),
+                cost=setting.costs.get(one.sentence, ""),
+            )
+            for one in setting.claims
+        }
         return tuple(found.get(claim.sentence) for claim in self.claims)
 
     @property

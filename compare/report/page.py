@@ -14,7 +14,7 @@ from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
 from compare.claims.errata import TEXT
 from compare.claims.study import Study
 from compare.report import quotes
-from compare.report.at_a_glance import Glance, cases, contrast
+from compare.report.at_a_glance import Glance, cases
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Matrix, Row, State, state_of
 from compare.report.numbers import answers_text, error_text, in_short, trimmed, unbroken, value_text, worst
 from compare.report.results_json import erratum_id
@@ -52,8 +52,12 @@ def page(
             counted=counted(matrix),
             paths=paths,
             glances=glances,
-            contrast=contrast(glances),
-            recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
+            seen={one.grade for one in glances},
+            grades=[
+                grade for grade in GRADES if any(matrix.grades(column)[grade] for column in matrix.columns)
+            ],
+            recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else {},
+            explained=lambda cell: "; ".join(filter(None, (cell.reason, cell.cost))),
             deviation=lambda cell: error_text(max(float(claim.difference.max()) for claim in cell.claims), 1),
             hero=_hero(run),
             filters=_filters(matrix),

@@ -1,6 +1,5 @@
 """Measure the claims of one study about one engine, for reports and for pytest."""
 
-import functools
 import math
 from collections.abc import Collection, Generator
 from dataclasses import dataclass, replace
@@ -8,10 +7,9 @@ from typing import Any
 
 from compare.claims.study import Findings, Study
 from compare.engines import Engine, engines
-from compare.engines.outside.processor_time import processor_time
 from compare.output.outside_text import Failure
+from compare.run.levels import QUICK_STEPS
 from compare.run.workers import Done, Workers, attempted
-from reference_model.systems import PinOnDisc
 
 START_UP = 60.0
 """Additional time in s for the start of a process, which imports the engine and the study."""
@@ -28,7 +26,7 @@ class Course:
     """Measurements of single claims about one engine, within the processor time that the other claims leave.
 
     One process should measure all claims, because later claims then reuse earlier motions. ``ready`` is True if it
-    has imported the engine.
+    has imported the engine. ``moved`` is the duration in s of the motions of its claims.
     """
 
     study: Study
@@ -37,6 +35,7 @@ class Course:
     quick: bool
     seed: int | None = None
     spent: float = 0.0
+    moved: float = 0.0
     ready: bool = False
 
     def claim(self, part: str) -> Generator[Work, Done, Findings | Failure | str]:
@@ -49,8 +48,9 @@ class Course:
         if not self.ready:  # imports do not count
             yield self._work(NO_CLAIM), self.limit + START_UP
         left = max(round(self.limit - self.spent, 1), 0.1)  # for people to read
-        done = yield self._work(part, left if self.quick else math.inf), left
+        done = yield self._work(part, QUICK_STEPS if self.quick else math.inf), left
         found: Findings | Failure = done.value
+        self.moved += self.study.duration(part) * (not isinstance(found, Findings) or not found.gaps)
         self.spent += done.spent
         self.ready = isinstance(found, Findings)  # a failure may have ended the process
         if isinstance(found, Findings):
@@ -65,7 +65,7 @@ class Course:
         return found
 
     def _work(self, part: str, within: float = math.inf) -> tuple[Any, ...]:
-        return self.study, self.engine, (part,), self.seed, within
+        return self.study, self.engine, (part,), self.seed, within, self.moved
 
 
 class Bench:
@@ -105,12 +105,13 @@ def measured(
     only: Collection[str] = (),
     seed: int | None = None,
     within: float = math.inf,
+    moved: float = 0.0,
 ) -> Findings:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
     An engine given by name is imported here; ``seed`` is for its units. ``only`` selects claims as in
-    ``Study.measure``. An exception costs only the claim that raised it, and a claim that would take longer than
-    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``.
+    ``Study.measure``. An exception costs only the claim that raised it. A claim that needs more than ``within``
+    steps, counted with earlier motions of ``moved`` s, is not attempted, see ``Findings.gaps``.
     """
     if isinstance(engine, str):
         engine = replace(engines([engine])[0], seed=seed)
@@ -122,30 +123,11 @@ def measured(
     for sentence, part in parts.items():
         if only and part not in only:
             continue
-        if within < math.inf and (estimate := study.duration(part) * pace(engine)) > within:
-            late = f"would take about {float(f'{estimate:.2g}'):g} s with {engine.name}; use --level full"
+        lasts = moved + study.duration(part)
+        if engine.step is not None and lasts / engine.step > within:
+            late = f"needs more than the {within:,.0f} steps that a study of the quick level allows; use --level full"
             found = found.and_claim(sentence, late)
         else:
+            moved = lasts
             found = found.and_claim(sentence, attempted(study.measure, engine, only=(part,)))
     return found
-
-
-PACED = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.1, disc_speed=0.0, offset=0.0)
-
-PACE_STEPS = 500
-
-
-@functools.cache
-def pace(engine: Engine) -> float:
-    """Return the processor time in s for a second of motion; 0 if ``engine`` has no fixed step or no result."""
-    found = attempted(_paced, engine) if engine.step is not None else 0.0
-    return found if isinstance(found, float) else 0.0
-
-
-def _paced(engine: Engine) -> float:
-    assert engine.step is not None
-    start, lasts = (1.0, 0.0, 0.0, 0.0), PACE_STEPS * engine.step
-    engine.simulate(PACED, start, (0.0, lasts))  # the first call may compile
-    began = processor_time()
-    engine.simulate(PACED, start, (0.0, lasts))
-    return (processor_time() - began) / lasts

@@ -115,7 +115,11 @@ def run(
         tuple(engine.name for engine in engines),
         errata,
         tuple(engine.name for engine in engines if engine.contact_only),
-        tuple(engine.about for engine in engines if engine.about),
+        tuple(
+            engine.about
+            for engine in engines
+            if engine.about and any(study.contact or not engine.contact_only for study in studies)
+        ),
         versions={one.name: engine_version(one.name, one.kin, one.version) for one in engines},
         seed=next((engine.seed for engine in engines), None),
     )
@@ -130,6 +134,10 @@ def run(
     return result
 
 
+TRUSTED = 20.0
+"""Work in s whose expected duration counts as seen, when the remaining time adapts to the durations so far."""
+
+
 @dataclass
 class _Runner:
     result: Run
@@ -141,6 +149,7 @@ class _Runner:
     expected: Mapping[tuple[str, str], float]
     progress: Progress
     began: dict[Hashable, float] = field(default_factory=dict)
+    took: dict[tuple[str, str], float] = field(default_factory=dict)  # s, without work of an earlier run
     stamps: dict[str, str | None] = field(default_factory=dict)
     drawn_from: dict[str, str] = field(default_factory=dict)
     courses: dict[Hashable, tuple[Course, Generator[Work, Done, Findings]]] = field(default_factory=dict)
@@ -190,15 +199,23 @@ class _Runner:
     def show(self, running: Collection[Hashable]) -> None:
         result, now = self.result, time.monotonic()
         self.began = {key: self.began.get(key, now) for key in running}
-        left: dict[Hashable, float] = {}
-        for study in result.studies:
-            for column in result.columns(study):
-                if (key := (study.name, column)) not in result.outcomes:
-                    spent = now - self.began.get(key, now)
-                    left[key] = max(self.expected.get(key, study.seconds) - spent, 0.0)
+        whole: dict[Hashable, float] = {
+            key: self.expected.get(key, study.seconds)
+            for study in result.studies
+            for key in ((study.name, column) for column in result.columns(study))
+        }
+        spent = {key: now - began for key, began in self.began.items() if key in whole}
+        left = {
+            key: max(each - spent.get(key, 0.0), 0.0)
+            for key, each in whole.items()
+            if key not in result.outcomes
+        }
+        late = sum(max(each - whole[key], 0.0) for key, each in spent.items())
+        seen = sum(self.took.values()) + late
+        pace = (TRUSTED + seen) / (TRUSTED + sum(whole[key] for key in self.took))
         total = sum(len(result.columns(study)) + 1 for study in result.studies) + len(result.errata)
         names = ", ".join(_name_of(key) for key in running)
-        seconds = max(sum(left.values()) / self.jobs, *left.values(), 0.0)
+        seconds = pace * max(sum(left.values()) / self.jobs, *left.values(), 0.0)
         self.progress(result.done, total, names, seconds)
 
     def _take(self, done: Done) -> None:
@@ -217,7 +234,7 @@ class _Runner:
         if last is None:
             return
         self.result.outcomes[kind, name] = last.value
-        self.result.seconds[kind, name] = last.seconds
+        self.result.seconds[kind, name] = self.took[kind, name] = last.seconds
         if isinstance(last.value, Findings) and not last.value.gaps:
             self.store.keep(kind, name, self.stamps[name], last.value, last.seconds)
         self._draw_if_complete(kind)

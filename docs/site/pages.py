@@ -159,7 +159,7 @@ def citation(page: str) -> str:
     """Return the page about citation with the entries of this version."""
     from cited import bibtex
 
-    return page.replace("<!-- entries -->", f"```bibtex\n{bibtex()}```")
+    return re.sub(r"(?s)```bibtex\n.*?```", lambda _: f"```bibtex\n{bibtex()}```", page)
 
 
 def footer() -> str:

@@ -13,43 +13,39 @@ from exudyn_models.forces.friction_laws import (
     slip_potential_of_contact,
 )
 from exudyn_models.forces.jit import KeptOnDisk, as_arrays, compiled
-from exudyn_models.forces.laws.calls import number_at
-from exudyn_models.forces.laws.product import Law, friction_force_slopes, friction_force_under
+from exudyn_models.forces.laws.tables import kept, number_at
 from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, SIZES, Kinds, slip_and_place
 from reference_model.systems import FloatArray
 
-Parameters = tuple[float, tuple[Any, ...]]
-"""Address of a ``Contact``, ``Kinds``, the address of a ``Law`` and reference coordinates, and the law's objects."""
+Parameters = float
+"""Address (see ``kept``) of a ``Contact``, ``Kinds`` and reference coordinates."""
 
-NO_LAW = 0.0
-
-KINDS_AT, LAW_AT, REFERENCE_AT = CONTACT_SIZE, CONTACT_SIZE + 3, CONTACT_SIZE + 4
+KINDS_AT, REFERENCE_AT = CONTACT_SIZE, CONTACT_SIZE + 3
 
 
-def parameters_of(contact: Contact, kinds: Kinds, law: Law | None, reference: FloatArray) -> Parameters:
+def parameters_of(contact: Contact, kinds: Kinds, reference: FloatArray) -> Parameters:
     """Return the parameters of a force function; ``reference``, shape (n,), contains the nodes' coordinates.
 
-    ``law`` gives a friction force that is not constant; the contact then contains 1 N.
+    The contact contains 1 N if the friction force is not constant.
     """
-    law_address, objects = law or (NO_LAW, ())
-    table = np.array([*contact, *kinds, law_address, *reference])
-    return float(table.ctypes.data), (*objects, table)  # the table lives as long as its address
+    return kept((*contact, *kinds, *reference.tolist()))
 
 
 @compiled
-def contact_of(parameters: Parameters) -> tuple[Contact, Kinds, Law]:
-    """Return contact, kinds and law from the table of ``parameters_of``."""
-    at, objects = parameters
+def contact_of(at: Parameters) -> tuple[Contact, Kinds]:
+    """Return contact and kinds from the table of ``parameters_of``."""
     radius, points, friction = number_at(at, 0), int(number_at(at, 1)), number_at(at, 2)
     contact = radius, points, friction, number_at(at, 3), int(number_at(at, 4)), number_at(at, 5)
-    kinds = int(number_at(at, KINDS_AT)), int(number_at(at, KINDS_AT + 1)), number_at(at, KINDS_AT + 2)
-    return contact, kinds, (number_at(at, LAW_AT), objects)
+    return contact, (
+        int(number_at(at, KINDS_AT)),
+        int(number_at(at, KINDS_AT + 1)),
+        number_at(at, KINDS_AT + 2),
+    )
 
 
 @compiled
-def motion_of(parameters: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, FloatArray]:
+def motion_of(at: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, FloatArray]:
     """Return coordinates with reference values, and velocities, in the memory of the lists ``q`` and ``q_t``."""
-    at, _ = parameters
     size = SIZES[int(number_at(at, KINDS_AT))] + SIZES[int(number_at(at, KINDS_AT + 1))]
     coordinates, velocities = as_arrays(q, q_t, size)
     for i in range(size):
@@ -58,63 +54,60 @@ def motion_of(parameters: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, Flo
 
 
 @compiled
-def friction_factor(
-    law: Law,
-    contact: Contact,
-    t: float,
-    place: tuple[float, float],
-    slip: tuple[float, float, float],
-    angle: float,
-) -> float:
-    """Return μN in N, or 1 without a law, for ``place`` and ``angle`` of ``slip_and_place``."""
-    if law[0] == NO_LAW:
-        return 1.0
-    (x, y), (ux, uy, spin) = place, slip
-    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
-    return friction_force_under(law, contact[3], t, math.sqrt(x * x + y * y), speed, spin)
-
-
-@compiled
-def force_on_any(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
-    """Return the generalised forces on both nodes, in the memory of ``q_t``.
-
-    All arguments but the first are Exudyn's.
-    """
-    contact, kinds, law = contact_of(parameters)
+def slip_on_any(parameters: Parameters, q: Any, q_t: Any) -> tuple[float, float, float]:
+    """Return radius (m), slip speed (m/s) and relative spin (rad/s) for load and coefficient."""
+    contact, kinds = contact_of(parameters)
     coordinates, velocities = motion_of(parameters, q, q_t)
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
-    angle = math.atan2(sine, cosine)
-    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
-    factor = friction_factor(law, contact, t, (x, y), (ux, uy, spin), angle)
-    fx, fy, moment = factor * fx, factor * fy, factor * moment
+    speed = slip_potential_of_contact(ux, uy, spin, math.atan2(sine, cosine), contact)
+    return math.sqrt(x * x + y * y), speed, spin
+
+
+@compiled
+def force_on_any(parameters: Parameters, factor: float, mbs: Any, t: Any, item: Any, q: Any, q_t: Any) -> Any:
+    """Return the generalised forces on both nodes, in the memory of ``q_t``, times ``factor``.
+
+    All arguments but the first two are Exudyn's.
+    """
+    contact, kinds = contact_of(parameters)
+    coordinates, velocities = motion_of(parameters, q, q_t)
+    to_slip, _, (cosine, sine), _ = slip_and_place(kinds, coordinates)
+    ux, uy, spin = slip_of_nodes(to_slip, velocities)
+    fx, fy, moment = friction_of_slip(ux, uy, spin, math.atan2(sine, cosine), contact)
     for k in range(len(velocities)):
-        velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
+        velocities[k] = factor * (fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k])
     return q_t
 
 
 @compiled
 def jacobian_on_any(
     parameters: Parameters,
+    factor: float,
+    by_radius: float,
+    by_speed: float,
+    by_spin: float,
     mbs: Any,
-    t: float,
-    item: int,
+    t: Any,
+    item: Any,
     q: Any,
     q_t: Any,
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the weighted sum of the derivatives of the negative forces by ``q`` and ``q_t``, shape (n, n)."""
-    contact, kinds, law = contact_of(parameters)
+    """Return the weighted sum of the derivatives of the negative forces by ``q`` and ``q_t``, shape (n, n).
+
+    The derivatives of ``factor`` with respect to the results of ``slip_on_any`` follow it.
+    """
+    contact, kinds = contact_of(parameters)
     coordinates, velocities = motion_of(parameters, q, q_t)
-    to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
+    to_slip, _, turned, _ = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
     angle = math.atan2(turned[1], turned[0])
     force = friction_of_slip(ux, uy, spin, angle, contact)
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
     # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; rotating slip and disc together does not change P.
-    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
-    creep = min(1.0, speed / contact[3])
+    creep = min(1.0, slip_potential_of_contact(ux, uy, spin, angle, contact) / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
     result, by_motion, forces = derivatives_on_nodes(
         kinds,
@@ -128,14 +121,10 @@ def jacobian_on_any(
         by_slip,
         slope,
     )
-    if law[0] != NO_LAW:
-        motion = t, math.sqrt(x * x + y * y), speed, spin
-        friction = friction_force_under(law, contact[3], *motion)
-        slopes = friction_force_slopes(law, contact[3], contact[0], *motion)
-        for j in range(len(forces)):
-            change = slopes[0] * by_motion[0, j] + slopes[1] * by_motion[1, j] + slopes[2] * by_motion[2, j]
-            for i in range(len(forces)):
-                result[i, j] = friction * result[i, j] + forces[i] * change
+    for j in range(len(forces)):
+        change = by_radius * by_motion[0, j] + by_speed * by_motion[1, j] + by_spin * by_motion[2, j]
+        for i in range(len(forces)):
+            result[i, j] = factor * result[i, j] + forces[i] * change
     return result
 
 

@@ -14,18 +14,15 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
-from functools import cached_property, partial
+from functools import cached_property
 from operator import mul
 from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.any_pair import Parameters, contact_of, parameters_of
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
-from exudyn_models.forces.jit import FLOATS, as_arrays, compiled, entry_point
-from exudyn_models.forces.laws.product import AT_REST, LAW, friction_force_under
-from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, ROTOR, SIZES, Floats, Kinds
+from exudyn_models.forces.load_and_coefficient import AT_REST, LoadAndCoefficient
+from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
 
 FREE = 1e-12
@@ -45,13 +42,8 @@ def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
 
 def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, Any]:
     """Return force and Jacobian as user functions for Exudyn."""
-    grounded, contact = kinds[0] == GROUND, factors.geometry
-    if factors.contact is not None:
-        force = _constant(grounded, factors.contact)
-    else:
-        at_mean_radius = mean_radius(contact), *contact[1:]
-        parameters = parameters_of(at_mean_radius, kinds, factors.law, np.zeros(2))
-        force = partial(entry_point(force_on_axis, LAW, None, float, None, None, FLOATS), parameters)
+    grounded = kinds[0] == GROUND
+    force = _varying(grounded, factors) if factors.contact is None else _constant(grounded, factors.contact)
 
     def jacobian(
         mbs: Any,
@@ -98,19 +90,17 @@ def _constant(grounded: bool, contact: Contact) -> Any:
     return on_ground if grounded else on_rotor
 
 
-@compiled
-def force_on_axis(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
-    """Return the moments on one or two rotors, in the memory of ``q_t``, under a law; R is the mean radius."""
-    (radius, _, _, epsilon, _, _), (master, _, _), law = contact_of(parameters)
-    disc = SIZES[master]
-    velocities, _ = as_arrays(q_t, q_t, disc + 1)
-    spin = velocities[1] - velocities[0] if disc == 1 else velocities[0]
-    speed = radius * abs(spin)
-    limit = radius * friction_force_under(law, epsilon, t, 0.0, speed, spin)
-    velocities[disc] = -math.copysign(limit * min(1.0, speed / epsilon), spin)
-    if disc == 1:
-        velocities[0] = -velocities[1]
-    return q_t
+def _varying(grounded: bool, factors: LoadAndCoefficient) -> Any:
+    radius, epsilon = mean_radius(factors.geometry), factors.geometry[3]
+
+    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        spin = q_t[0] if grounded else q_t[1] - q_t[0]
+        speed = radius * abs(spin)
+        limit = radius * factors.friction_force(t, 0.0, speed, spin)
+        of_disc = -math.copysign(limit * min(1.0, speed / epsilon), spin)
+        return [of_disc] if grounded else [-of_disc, of_disc]
+
+    return force
 
 
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:

@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache
-from typing import Any, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import numpy as np
 
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact
-from exudyn_models.forces.jit import entry_point
-from exudyn_models.forces.laws.curves import curve_of_table
-from exudyn_models.forces.laws.functions import LawFunction, checked_not_negative, law_function
+from exudyn_models.forces.laws.curves import curve_of_table, peak_over_sliding
+from exudyn_models.forces.laws.functions import ARGUMENTS, LawFunction, checked_not_negative, law_function
 from exudyn_models.forces.laws.places import ring_places, table_of
-from exudyn_models.forces.laws.product import (
-    LAW,
-    Law,
-    friction_force_slopes,
-    friction_force_under,
-    law_of,
-)
 from reference_model.systems import FloatArray, finite_number
 
 NumberOrFunction: TypeAlias = float | Callable[..., float]
@@ -28,6 +19,15 @@ NumberOrFunction: TypeAlias = float | Callable[..., float]
 
 Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArray
 """A coefficient, which may also be a table for ``curve_of_table``."""
+
+DIFFERENCE = 1e-5
+"""Relative step of the central differences of μN."""
+
+SLOWEST = 1e-9
+"""Slip speed in m/s below which this step stays constant."""
+
+AT_REST = 1e-200
+"""Relative spin in rad/s of a contact at rest that is about to slide."""
 
 
 class LoadAndCoefficient:
@@ -57,24 +57,21 @@ class LoadAndCoefficient:
         coefficient = _coefficient(friction_coefficient)
         load = _number_or_function("normal_load", normal_load, " N")
         self.friction_coefficient, self.normal_load = friction_coefficient, normal_load
+        factors = [factor for factor in (coefficient, load) if isinstance(factor, LawFunction)]
         numbers = (factor for factor in (coefficient, load) if isinstance(factor, float))
-        constant = math.prod(numbers, start=self._plates)
-        functions = [factor if isinstance(factor, LawFunction) else None for factor in (coefficient, load)]
-        self._reads = {name for function in functions if function for name in function.arguments}
-        curve = coefficient if isinstance(coefficient, np.ndarray) else None
-        if self.static_ratio > 1.0 or curve is not None:
-            self._reads.add("slip_speed")
+        self._constant, self._factors = math.prod(numbers, start=self._plates), factors
+        if self.static_ratio > 1.0:
+            factors.append(_of_slip_speed(self._peak))
+        self._reads = {name for factor in factors for name in factor.arguments}
         self.depends_on_motion = not self._reads <= {"time"}
         self.depends_on_radius = "radius" in self._reads
         self.depends_on_direction = "relative_spin" in self._reads
         self.depends_on_slip = not self._reads <= {"time", "radius"}
-        #: Whether it calls no Python function.
-        self.compiled = all(function is None or function.address != 0.0 for function in functions)
-        is_number = not self._reads and functions == [None, None]
         #: The contact with its μN, or None if μN is not constant.
-        self.contact = _with(self.geometry, constant) if is_number else None
-        #: The law of μN, or None if it is constant.
-        self.law: Law | None = None if is_number else law_of(constant, self.static_ratio, curve, *functions)
+        self.contact = None if factors else _with(self.geometry, self._constant)
+
+    def _peak(self, slip_speed: float) -> float:
+        return peak_over_sliding(slip_speed / self.geometry[3], self.static_ratio)
 
     def without_peak(self) -> LoadAndCoefficient:
         """Return the sliding friction alone."""
@@ -100,19 +97,36 @@ class LoadAndCoefficient:
 
     def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
         """Return the friction force μN in N of all plates for a motion as in ``ARGUMENTS``."""
-        if self.contact is not None:
-            return self.contact[2]
-        motion = t, radius, slip_speed, relative_spin
-        return cast(float, _of_python()(self.law, self.geometry[3], *motion))
+        force = self._constant
+        for factor in self._factors:
+            result = factor.of_motion(t, radius, slip_speed, relative_spin)
+            if type(result) is not float or not 0.0 <= result < math.inf:
+                result = factor.checked(result, t, radius, slip_speed, relative_spin)
+            force *= result
+        return force
 
     def friction_force_slopes(
         self, t: float, radius: float, slip_speed: float, relative_spin: float
-    ) -> FloatArray:
-        """Return ∂(μN)/∂(radius, slip speed, relative spin) in N/m, N s/m and N s, shape (3,)."""
-        if self.law is None:
-            return np.zeros(3)
-        fixed = self.law, self.geometry[3], self.contact_radius
-        return np.array(_slopes()(*fixed, t, radius, slip_speed, relative_spin))
+    ) -> tuple[float, float, float]:
+        """Return ∂(μN)/∂(radius, slip speed, relative spin) in N/m, N s/m and N s, by central differences."""
+        motion, slopes = [radius, slip_speed, relative_spin], [0.0, 0.0, 0.0]
+        rim, slowest = self.contact_radius, max(self.geometry[3], SLOWEST)
+        least = rim, slowest, slowest / rim if rim > 0.0 else 1.0
+        for i, name in enumerate(list(ARGUMENTS)[1:]):
+            value = motion[i]
+            if name not in self._reads or (name == "radius" and value == 0.0):  # no slope on the axis
+                continue
+            step = DIFFERENCE * max(abs(value), least[i])
+            low, high = value - step, value + step
+            if value >= 0.0:  # the coefficient may jump at rest
+                low = max(AT_REST, low)
+            else:
+                high = min(-AT_REST, high)
+            for end, sign in ((low, -1.0), (high, 1.0)):
+                motion[i] = end
+                slopes[i] += sign * self.friction_force(t, motion[0], motion[1], motion[2]) / (high - low)
+            motion[i] = value
+        return slopes[0], slopes[1], slopes[2]
 
 
 def _with(contact: Contact, friction: float) -> Contact:
@@ -120,21 +134,15 @@ def _with(contact: Contact, friction: float) -> Contact:
     return radius, points, friction, epsilon, held, inner
 
 
-@cache
-def _of_python() -> Callable[..., Any]:
-    return entry_point(friction_force_under, LAW, *[float] * 5)
-
-
-@cache
-def _slopes() -> Callable[..., Any]:
-    return entry_point(friction_force_slopes, LAW, *[float] * 6)
-
-
-def _coefficient(value: Coefficient) -> float | LawFunction | FloatArray:
+def _coefficient(value: Coefficient) -> float | LawFunction:
     name = "friction_coefficient"
     if isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0):
-        return curve_of_table(name, value)
+        return _of_slip_speed(curve_of_table(name, value))
     return _number_or_function(name, cast(NumberOrFunction, value), "")
+
+
+def _of_slip_speed(coefficient: Callable[[float], float]) -> LawFunction:
+    return LawFunction("friction_coefficient", "", ("slip_speed",), lambda t, r, v, s: coefficient(v))
 
 
 def _number_or_function(name: str, value: NumberOrFunction, unit: str) -> float | LawFunction:

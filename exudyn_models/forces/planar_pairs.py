@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.any_pair import Parameters, contact_of, friction_factor, motion_of
+from exudyn_models.forces.any_pair import Parameters, contact_of, motion_of
 from exudyn_models.forces.friction_laws import Contact, ring_friction, ring_friction_derivatives
 from exudyn_models.forces.jit import compiled, inlined
 from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, PLANAR, ROTOR, SIZES
@@ -19,9 +19,11 @@ IN_THE_PLANE = tuple((master, PLANAR, NO_MOUNTS) for master in (GROUND, ROTOR, P
 
 
 @compiled
-def force_in_the_plane(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
-    """Return the generalised forces on both nodes, in the memory of ``q_t``."""
-    contact, motion, forces, disc = _contact_and_motion(parameters, t, q, q_t)
+def force_in_the_plane(
+    parameters: Parameters, factor: float, mbs: Any, t: Any, item: Any, q: Any, q_t: Any
+) -> Any:
+    """Return the generalised forces on both nodes, in the memory of ``q_t``, times ``factor``."""
+    contact, motion, forces, disc = _contact_and_motion(parameters, factor, q, q_t)
     forces[disc], forces[disc + 1], forces[disc + 2], master_moment = ring_friction(*motion, contact)
     if disc > 0:
         forces[disc - 1] = master_moment
@@ -33,16 +35,17 @@ def force_in_the_plane(parameters: Parameters, mbs: Any, t: float, item: int, q:
 @compiled
 def jacobian_in_the_plane(
     parameters: Parameters,
+    factor: float,
     mbs: Any,
-    t: float,
-    item: int,
+    t: Any,
+    item: Any,
     q: Any,
     q_t: Any,
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the negative forces, shape (n, n), under a load and a coefficient of time alone."""
-    contact, motion, _, disc = _contact_and_motion(parameters, t, q, q_t)
+    """Return the derivatives of the negative forces, shape (n, n), if ``factor`` does not depend on the motion."""
+    contact, motion, _, disc = _contact_and_motion(parameters, factor, q, q_t)
     derivatives = ring_friction_derivatives(*motion, contact)
     # The ground is a planar master without coordinates, and a rotor is a planar master without x and y.
     hidden = SIZES[PLANAR] - disc
@@ -55,10 +58,10 @@ Relative = tuple[float, float, float, float, float, float, float]
 
 @inlined
 def _contact_and_motion(
-    parameters: Parameters, t: float, q: Any, q_t: Any
+    parameters: Parameters, factor: float, q: Any, q_t: Any
 ) -> tuple[Contact, Relative, FloatArray, int]:
     """Return the contact with its present μN, the relative motion, the velocities, and the disc's first index."""
-    contact, kinds, law = contact_of(parameters)
+    contact, kinds = contact_of(parameters)
     coordinates, velocities = motion_of(parameters, q, q_t)
     disc = SIZES[kinds[0]]
     x, y, angle = coordinates[disc], coordinates[disc + 1], coordinates[disc + 2]
@@ -67,10 +70,8 @@ def _contact_and_motion(
         master_spin = velocities[disc - 1]
     if disc > 1:
         x, y, vx, vy = x - coordinates[0], y - coordinates[1], vx - velocities[0], vy - velocities[1]
-    slip = vx + master_spin * y, vy - master_spin * x, spin - master_spin
     radius, points, friction, epsilon, held, inner = contact
-    friction *= friction_factor(law, contact, t, (x, y), slip, angle)
-    contact = radius, points, friction, epsilon, held, inner
+    contact = radius, points, factor * friction, epsilon, held, inner
     return contact, (x, y, angle, vx, vy, master_spin, spin), velocities, disc
 
 

@@ -14,8 +14,7 @@ import numpy as np
 
 from exudyn_models.forces.any_pair import Parameters
 from exudyn_models.forces.jit import FLOATS, KeptOnDisk, as_arrays, compiled, entry_point
-from exudyn_models.forces.laws.calls import number_at
-from exudyn_models.forces.laws.product import LAW
+from exudyn_models.forces.laws.tables import kept, number_at
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
     NO_MOUNTS,
@@ -55,9 +54,8 @@ def support_functions(
 
 def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
     xb, yb, angle, x, y, *_ = reference.tolist()
-    table = np.array([hidden, len(reference) - hidden, *law, *offset, x - xb, y - yb, angle])
-    evaluate = entry_point(force_in_the_plane, LAW, None, None, None, FLOATS, FLOATS)
-    return partial(evaluate, (float(table.ctypes.data), (table,)))  # the table lives as long as its address
+    parameters = kept((hidden, len(reference) - hidden, *law, *offset, x - xb, y - yb, angle))
+    return partial(entry_point(force_in_the_plane, float, None, None, None, FLOATS, FLOATS), parameters)
 
 
 def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
@@ -118,13 +116,12 @@ def elastic_energy(square: float, law: Law) -> float:
 
 
 @compiled
-def force_in_the_plane(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
+def force_in_the_plane(at: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
     """Return the forces on both nodes, in the memory of ``q_t``, for a base that only turns about the z-axis.
 
-    The parameters are the address of the numbers of hidden and of other coordinates, a ``Law``, an ``Offset``, and
+    ``at`` is the address of the numbers of hidden and of other coordinates, a ``Law``, an ``Offset``, and
     reference values of the disc's relative position and the base's angle.
     """
-    at, _ = parameters
     disc, size = SIZES[PLANAR] - int(number_at(at, 0)), int(number_at(at, 1))
     positions, velocities = as_arrays(q, q_t, size)
     x, y, vx, vy = positions[disc], positions[disc + 1], velocities[disc], velocities[disc + 1]

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.jit import KeptOnDisk, compiled, inlined
-from exudyn_models.forces.laws.calls import number_at
+from exudyn_models.forces.laws.tables import number_at
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
 

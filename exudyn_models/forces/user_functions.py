@@ -3,14 +3,14 @@
 Rotors on one axis with a constant friction force need no compiled code.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache, partial
-from typing import Any
+from typing import Any, cast
 
-from exudyn_models.forces.any_pair import force_on_any, jacobian_on_any, parameters_of
+from exudyn_models.forces.any_pair import force_on_any, jacobian_on_any, parameters_of, slip_on_any
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
 from exudyn_models.forces.jit import FLOATS, entry_point
-from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import IN_THE_PLANE, force_in_the_plane, jacobian_in_the_plane
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
@@ -27,20 +27,33 @@ def force_and_jacobian(
     if on_one_axis(kinds, factors):
         return functions_on_axis(kinds, factors)
     in_plane = kinds in IN_THE_PLANE
-    parameters = parameters_of(factors.contact or factors.geometry, kinds, factors.law, reference)
+    parameters = parameters_of(factors.contact or factors.geometry, kinds, reference)
     force = entry_point(force_in_the_plane if in_plane else force_on_any, *FORCE)
+    slip = entry_point(slip_on_any, float, FLOATS, FLOATS) if factors.depends_on_motion else None
+
+    def motion(t: float, q: Floats, q_t: Floats) -> Motion:
+        return (t, *slip(parameters, q, q_t)) if slip else (t, math.nan, math.nan, math.nan)
+
+    def varying(mbs: Any, t: float, item: int, q: Floats, q_t: Floats) -> Floats:
+        friction = factors.friction_force(*motion(t, q, q_t))
+        return cast(Floats, force(parameters, friction, mbs, t, item, q, q_t))
 
     @cache  # compiled when first needed; explicit solvers never need it
     def derive() -> Callable[..., Any]:
-        in_closed_form = in_plane and not factors.depends_on_motion
-        return entry_point(jacobian_in_the_plane if in_closed_form else jacobian_on_any, *JACOBIAN)
+        if in_plane and slip is None:
+            return entry_point(jacobian_in_the_plane, *FORCE, float, float)
+        return entry_point(jacobian_on_any, *[float] * 4, *FORCE[1:], float, float)
 
-    def jacobian(*arguments: Any) -> Any:
-        return derive()(parameters, *arguments)
+    def jacobian(mbs: Any, t: float, item: int, q: Floats, q_t: Floats, *weights: float) -> FloatArray:
+        known = motion(t, q, q_t)
+        friction = 1.0 if factors.contact else factors.friction_force(*known)
+        slopes = () if in_plane and slip is None else factors.friction_force_slopes(*known)
+        return cast(FloatArray, derive()(parameters, friction, *slopes, mbs, t, item, q, q_t, *weights))
 
-    return partial(force, parameters), jacobian
+    return varying if factors.contact is None else partial(force, parameters, 1.0), jacobian
 
 
-FORCE = LAW, None, float, None, FLOATS, FLOATS
+Motion = tuple[float, float, float, float]
+"""Time (s), radius (m), slip speed (m/s) and relative spin (rad/s)."""
 
-JACOBIAN = *FORCE, float, float
+FORCE = float, float, None, None, None, FLOATS, FLOATS

@@ -56,15 +56,6 @@ class RingFriction:
     _thermal: ThermalNode | None = field(default=None, repr=False)
 
     @property
-    def compiled(self) -> bool:
-        """True if load and coefficient are numbers, tables or numba functions (``@numba.njit``).
-
-        Then no Python function is called in a run, and outer names in numba functions keep their values from
-        compilation.
-        """
-        return self._contact.factors.compiled
-
-    @property
     def effective_radius(self) -> float:
         """Ratio of moment to friction force in m of a disc that only turns: M = μN·r, of all plates."""
         return mean_radius(self._contact.factors.geometry)

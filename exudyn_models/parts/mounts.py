@@ -11,7 +11,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.laws.calls import kept
+from exudyn_models.forces.laws.tables import kept
 from exudyn_models.forces.slip_kinematics import (
     GROUND,
     KINDS,

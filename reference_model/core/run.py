@@ -40,7 +40,7 @@ from reference_model.core.slip import creep_from, ends_together, is_frozen, poin
 from reference_model.core.steps.explicit import EXTENDED, SIZE, TERMS, Unknowns
 from reference_model.core.stiff import FIRST_STEP, at_rest, begin_slip, slip_stiffly
 from reference_model.core.surfaces import grip, sides
-from reference_model.numerics.parts import part
+from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
 AT_REST = 1e-15
@@ -99,7 +99,7 @@ def advance(
     follow(unpacked(parameters, around), state, memory, tolerance, end, times, out, phases, most_work)
 
 
-@part
+@written_out
 def follow(
     law: Law, state: FloatArray, memory: FloatArray, tolerance: float, end: float, times: FloatArray,
     out: FloatArray, phases: FloatArray, most_work: float,
@@ -151,7 +151,7 @@ def first_kind(y: Unknowns, memory: FloatArray, law: Law) -> float:
     return PIVOTS if pivots(y, memory, law) or departing(y, law)[1].sense != 0.0 else SLIPS
 
 
-@part
+@written_out
 def leave_rest(
     y: Unknowns, memory: FloatArray, tolerance: float, end: float, work: float, times: FloatArray, out: FloatArray,
     phases: FloatArray, law: Law, K: FloatArray, F: FloatArray,
@@ -182,7 +182,7 @@ def leave_rest(
     return y, law
 
 
-@part
+@written_out
 def slip_on(
     y: Unknowns, memory: FloatArray, tolerance: float, end: float, work: float, times: FloatArray, out: FloatArray,
     law: Law, K: FloatArray, F: FloatArray,

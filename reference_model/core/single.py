@@ -33,7 +33,7 @@ from reference_model.core.run import advance
 from reference_model.core.steps.explicit import SIZE
 from reference_model.core.units import Frame, Units
 from reference_model.numerics.cache_folders import has_files
-from reference_model.numerics.parts import digest_with_parts, register_parts
+from reference_model.numerics.parts import digest_with_parts, prepared
 from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Kind, SimulationError, Solution, StepCount, Trajectory, phases_of
@@ -100,8 +100,7 @@ def compiled_advance() -> Any:
     """Return :func:`reference_model.core.run.advance` as a ``CompiledOnce``."""
     from reference_model.numerics.compiled_once import CompiledOnce
 
-    register_parts()
-    return CompiledOnce(advance, PACKAGE, _digest())
+    return CompiledOnce(prepared(advance), PACKAGE, _digest())
 
 
 def is_compiled() -> bool:

@@ -92,7 +92,7 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
         ends = together or left * math.sqrt(across) / fall + left * left * pace < REST_TIME
     if ends:
         return left
-    return 0.0 if s < reversal and fall < 10.0 * NOISE * law.friction else -1.0
+    return 0.0 if s < reversal and max(s, fall) < 10.0 * NOISE * law.friction else -1.0
 
 
 @part

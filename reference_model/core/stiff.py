@@ -30,7 +30,7 @@ from reference_model.core.slip import creep_from, point_for
 from reference_model.core.steps.collocation import NODES, POINTS, at, error_of, series, solve
 from reference_model.core.steps.explicit import Unknowns
 from reference_model.core.surfaces import crossed_any
-from reference_model.numerics.parts import part
+from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
 FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12
@@ -75,25 +75,28 @@ def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
     """Return the extrapolation of a step of length ``before`` to the nodes of the next step, shape (NODES, 6)."""
     guess = np.empty((NODES, 6))
     for i in range(NODES):
-        guess[i] = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)
+        there = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)
+        for v in range(6):
+            guess[i, v] = there[v]
     return guess
 
 
 @part
 def onward(y: Unknowns, h: float, law: Law) -> FloatArray:
     """Return the unknowns at the nodes of a step of length ``h`` if the slip stays the same, shape (NODES, 6)."""
-    guess, start = np.empty((NODES, 6)), six(y)
+    guess = np.empty((NODES, 6))
     ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
     for i in range(NODES):
         place = 0.5 * h * (POINTS[i] + 1.0)
-        guess[i] = start
-        guess[i, 0] += place * (ux - law.omega * y[1])
-        guess[i, 1] += place * (uy + law.omega * y[0])
-        guess[i, 5] += place * (law.omega + y[4] / law.gyration)
+        for v in range(2, 5):
+            guess[i, v] = y[v]
+        guess[i, 0] = y[0] + place * (ux - law.omega * y[1])
+        guess[i, 1] = y[1] + place * (uy + law.omega * y[0])
+        guess[i, 5] = y[5] + place * (law.omega + y[4] / law.gyration)
     return guess
 
 
-@part
+@written_out
 def slip_stiffly(
     y: Unknowns,
     memory: FloatArray,
@@ -152,7 +155,7 @@ def slip_stiffly(
     return y
 
 
-@part
+@written_out
 def begin_slip(
     y: Unknowns, n: tuple[float, float, float], memory: FloatArray, tolerance: float, end: float, times: FloatArray,
     out: FloatArray, law: Law,

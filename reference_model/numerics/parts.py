@@ -1,7 +1,8 @@
 """Registration of plain functions, which run interpreted until compiled code is asked for."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from types import FunctionType
+from typing import Any, TypeVar, cast
 
 from reference_model.numerics.cache_folders import digest_of_text
 
@@ -12,6 +13,9 @@ PARTS: list[Callable[..., Any]] = []
 
 INLINED: list[Callable[..., Any]] = []
 """Functions that are small and called often."""
+
+WRITTEN_OUT: list[Callable[..., Any]] = []
+"""Those that are large and have one caller."""
 
 REPLACED: dict[Callable[..., Any], Callable[..., Any]] = {}
 """Functions that need Python, and their replacements in compiled code."""
@@ -32,6 +36,12 @@ def inlined(function: Function) -> Function:
     return function
 
 
+def written_out(function: Function) -> Function:
+    """Register a part that is inserted into its caller, because LLVM optimises a called one again in all callers."""
+    WRITTEN_OUT.append(part(function))
+    return function
+
+
 def replaced_by(other: Callable[..., Any]) -> Callable[[Function], Function]:
     """Register a function that needs Python, and ``other`` with the same arguments for compiled code."""
 
@@ -42,8 +52,8 @@ def replaced_by(other: Callable[..., Any]) -> Callable[[Function], Function]:
     return register
 
 
-def register_parts() -> None:
-    """Make numba compile parts into their callers."""
+def prepared(function: Function) -> Function:
+    """Return ``function`` for numba, which then compiles parts into their callers."""
     from numba.extending import overload, register_jitable
 
     for each in PARTS:
@@ -51,6 +61,21 @@ def register_parts() -> None:
         register_jitable(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **inline)(each)
     for each, other in REPLACED.items():
         overload(each, strict=False)(_always(other))
+    return _with_written_out(function)
+
+
+def _with_written_out(function: Function) -> Function:
+    from numba import njit
+
+    names, code = function.__globals__, function.__code__
+    inserted = {
+        name: njit(inline="always", error_model="numpy")(_with_written_out(names[name]))
+        for name in code.co_names
+        if any(names.get(name) is each for each in WRITTEN_OUT)
+    }
+    whole = FunctionType(code, {**names, **inserted}, function.__name__)
+    whole.__module__, whole.__qualname__ = function.__module__, function.__qualname__
+    return cast(Function, whole)
 
 
 def _always(other: Callable[..., Any]) -> Callable[..., Any]:
@@ -62,7 +87,7 @@ def digest_with_parts(function: Callable[..., None]) -> str:
     parts = sorted(
         [*PARTS, *INLINED, *REPLACED.values()], key=_name_of
     )  # independent of the order of imports
-    return digest_of_text([*parts, function, register_parts])
+    return digest_of_text([*parts, function, prepared])
 
 
 def _name_of(function: Callable[..., Any]) -> tuple[str, str]:

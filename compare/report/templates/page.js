@@ -157,7 +157,7 @@
   }
   let closed = [];
   addEventListener("beforeprint", () => {
-    closed = [...document.querySelectorAll("details:not([open])")];
+    closed = [...document.querySelectorAll("details:not([open]):not(.claim)")];
     for (const one of closed) one.open = true;
     for (const image of document.images) image.loading = "eager";
   });

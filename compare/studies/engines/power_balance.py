@@ -10,7 +10,17 @@ import numpy as np
 from compare.claims import ROUNDING, WORKING, ByEngine, Data, Figures, Measured, Study, refined
 from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG11
 from compare.engines import DeclaredLackError, Engine
-from compare.output.figures import BLACK, GREEN, GREY, ORANGE, axis, curve, engines_in, new_figure
+from compare.output.figures import (
+    BLACK,
+    GREEN,
+    GREY,
+    ORANGE,
+    axis,
+    curve,
+    engine_style,
+    engines_in,
+    new_figure,
+)
 from reference_model import PowerBalance, Trajectory, power_balance, simulate, sticking_radius
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
@@ -188,7 +198,7 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
         size=1.0,
         system=motion.system,
         source=motion.source,
-        data=lambda: _drawn(*balances.values()) if motion.drawn else {},
+        data=lambda: _drawn(next(iter(balances.values()))) if motion.drawn else {},
         named={name.replace(",", ""): None},
     )
 
@@ -218,9 +228,7 @@ def _relative_residual(balance: PowerBalance) -> float:
     return float(np.max(np.abs(balance.residual)) / balance.turned_over)
 
 
-def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
-    last = others[-1]  # its phases may begin and end at other times
-    change = balance.residual - np.interp(balance.times, last.times, last.residual)
+def _drawn(balance: PowerBalance) -> Data:
     return {
         "times": balance.times,
         "drive work": balance.drive_work,
@@ -228,7 +236,6 @@ def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
         "damper heat": balance.damper_heat,
         "stored energy": balance.stored_energy,
         "residual": balance.residual / balance.turned_over,
-        "change of residual": change / balance.turned_over,
     }
 
 
@@ -242,24 +249,30 @@ def draw(data: ByEngine) -> Figures:
     }
     sparse = slice(None, None, 5)
 
-    def draw_size(found: Data, name: str, **look: Any) -> None:
-        size = np.maximum(np.abs(found[name]), 1e-18)
-        residuals.semilogy(found["times"][sparse], size[sparse], **look)
-
     for rank, engine in enumerate(engines_in(data)):
         found = data[engine]
         if rank == 0:
             for name, look in looks.items():
-                energies.plot(found["times"][sparse], found[name][sparse], label=name, linewidth=1.3, **look)
-            draw_size(found, "residual", color=GREY, linewidth=2.4, label=f"residual, {engine}")
-        draw_size(
-            found, "change of residual", **curve(engine, f"change with tolerance, {engine}", linewidth=1.0)
+                energies.plot(found["times"][sparse], found[name][sparse], linewidth=1.3, **look)
+                end = (found["times"][-1], found[name][-1])
+                energies.annotate(
+                    name, end, (-2, 5), textcoords="offset points", color=look["color"], ha="right"
+                )
+        largest = np.maximum.accumulate(np.maximum(np.abs(found["residual"]), 1e-18))
+        residuals.semilogy(found["times"][sparse], largest[sparse], **curve(engine))
+        place = (found["times"][-1], largest[-1])
+        residuals.annotate(
+            engine,
+            place,
+            (0, 7 - 21 * rank),
+            textcoords="offset points",
+            color=engine_style(engine).colour,
+            ha="right",
         )
-    residuals.axhline(RESOLUTION, color=BLACK, linewidth=0.8, linestyle=(0.0, (4.0, 3.0)), label="resolution")
+    residuals.axhline(RESOLUTION, color=BLACK, linewidth=0.8, linestyle=(0.0, (4.0, 3.0)))
+    residuals.annotate("resolution of the claim", (0.0, RESOLUTION), (0, 5), textcoords="offset points")
     energies.set(xlabel=axis("t", "s"), ylabel="energy in J")
-    residuals.set(xlabel=axis("t", "s"), ylabel="residual / energy turned over", ylim=(1e-18, 1e-7))
-    energies.legend()
-    residuals.legend(loc="lower right", fontsize=9.0)
+    residuals.set(xlabel=axis("t", "s"), ylabel="largest residual so far / energy", ylim=(1e-16, 1e-7))
     return {"power-balance": figure}
 
 

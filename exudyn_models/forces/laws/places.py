@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.laws.calls import kept, kept_at, number_at
+from exudyn_models.forces.laws.tables import kept, kept_at, number_at
 from reference_model.systems import FloatArray, Place
 
 BEND = 4.0 / 3.0

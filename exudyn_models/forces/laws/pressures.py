@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.laws.calls import kept, kept_at, number_at
+from exudyn_models.forces.laws.tables import kept, kept_at, number_at
 from reference_model.systems import finite_number, require_callable, shown
 
 Pressure = Literal["uniform", "wear"] | Callable[[float], float]

@@ -192,9 +192,8 @@ def solve_linear(matrix: FloatArray, right: FloatArray) -> None:
             if abs(matrix[i, k]) > abs(matrix[best, k]):
                 best = i
         if best != k:
-            work[k:] = matrix[k, k:]
-            matrix[k, k:] = matrix[best, k:]
-            matrix[best, k:] = work[k:]
+            for j in range(k, n):
+                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
             right[k], right[best] = right[best], right[k]
         if matrix[k, k] == 0.0:
             right[:] = math.nan
@@ -257,7 +256,10 @@ def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[boo
 def series(start: FloatArray, h: float, values: FloatArray, law: Law) -> FloatArray:
     """Return Legendre coefficients of the unknowns over the step, shape (NODES + 1, 6)."""
     samples = np.empty((NODES + 1, 6))
-    samples[0], samples[1:] = start, values
+    for v in range(6):
+        samples[0, v] = start[v]
+        for i in range(NODES):
+            samples[1 + i, v] = values[i, v]
     if len(law.around) == 0:  # the angle follows from r
         for i in range(NODES):
             turned = 0.0

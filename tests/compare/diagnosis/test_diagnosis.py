@@ -441,7 +441,7 @@ def test_an_error_far_below_another_law_may_be_one_of_precision():
     (said,) = Row(
         "single", motions={"release": motion(replace(reference, function=simulate), "release")}
     ).sentences
-    assert said.startswith("Undecided: errors remain at any tolerance: release ")
+    assert said.startswith("Undecided: errors remain at any tolerance: pin is released ")
     assert said.endswith(" m; declare the engine's precision.")
 
 

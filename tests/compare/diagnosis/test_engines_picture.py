@@ -1,18 +1,47 @@
-"""The README's first figure shows the recorded results of the engines."""
+"""The picture and README's table show the recorded results of the engines."""
 
 import runpy
 
+import pytest
 from PIL import Image
 from processes import ROOT
 
 
-def test_the_picture_of_the_engines_is_current():
-    script = runpy.run_path(str(ROOT / "docs" / "draw_engines.py"))
+@pytest.fixture(scope="module")
+def script():
+    return runpy.run_path(str(ROOT / "docs" / "draw_engines.py"))
+
+
+def test_the_picture_and_the_table_of_the_engines_are_current(script):
     with Image.open(script["PICTURE"]) as picture:
         assert picture.info["Description"] == script["drawn_from"](), "run python docs/draw_engines.py"
+    assert script["PLACE"].search(script["README"].read_text("utf-8"))[0] == script["table"]()
 
 
-def test_the_picture_marks_a_friction_law_that_is_not_a_cone():
-    cells = runpy.run_path(str(ROOT / "docs" / "draw_engines.py"))["cells"]()
-    assert cells["MuJoCo, pyramidal cone"]["friction law"] == ["✗", "pyramid"]
-    assert {mark for mark, _ in cells["reference"].values()} == {"✓"}
+def test_a_mark_means_convergence_to_the_exact_motion_and_a_law_has_a_word(script):
+    cells = script["cells"]()
+    assert {mark for found in cells.values() for mark, *_ in [found["law"]]} == {""}
+    laws = {engine: found["law"][1] for engine, found in cells.items()}
+    assert [laws[one] for one in ("reference", "exudyn", "exudyn-native")] == ["cone"] * 3
+    assert laws["MuJoCo, pyramidal cone"] == "pyramid"
+    assert laws["MuJoCo, as shipped"] == "unclear: creeps"
+    assert "" not in laws.values()
+    mark, error, order, cost = cells["Bullet, cone"]["disc"]
+    assert (mark, error, order) == ("✗", "3e-04", "order 0.1")
+    assert cost == "7,000 steps per natural period, 1 s"
+
+
+def test_the_table_says_why_an_engine_does_not_agree(script):
+    lines = {line.split("|")[1].strip(): line for line in script["table"]().splitlines()}
+    assert len(lines) == 2 + 14
+    assert "| ✗ 1 of 6 cone | cone |" in lines["Bullet"]
+    assert lines["Bullet"].endswith("; the friction force on a disc is 21 % too large |")
+    assert lines["Chipmunk"].endswith("| the friction force on a disc is 45 % too large |")
+    assert "| ? 2 of 5 | ✓ contact |" in lines["Rapier"]
+    assert lines["Rapier"].endswith("| as shipped: its error bar of 0.33 m exceeds 0.080 m |")
+    assert "| 0.01 m, 7,000/T, 0.9 s |" in lines["Bullet"]
+    assert all(
+        line.rstrip().endswith("|  |") == ("✗" not in line and "?" not in line)
+        for line in lines.values()
+        if "---" not in line and "why" not in line
+    )

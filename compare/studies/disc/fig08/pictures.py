@@ -6,7 +6,18 @@ from typing import Any
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import GREY, PALETTE, Axes, Figure, axis, curve, engines_in, new_figure, points
+from compare.output.figures import (
+    BLACK,
+    GREY,
+    PALETTE,
+    Axes,
+    Figure,
+    axis,
+    curve,
+    engines_in,
+    new_figure,
+    points,
+)
 from compare.studies.disc.fig08.study import OFFSETS, PAPER_LAW, RESOLUTION, RING, place_and_spin
 from compare.studies.toolkit.steady_motion import last_load, with_load
 from reference_model.contact.contact_law import IsotropicContact
@@ -49,21 +60,18 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_spin(data: ByEngine) -> Figure:
-    figure, (spin, distance, plane) = new_figure(ncols=3, width=13.2, height=4.2)
+    figure, (spin, distance) = new_figure(ncols=2, width=10.6, height=4.4)
     own = f"{RING.offset:g}"
     if "theory" in data:
-        _draw_theory(spin, distance, plane, data["theory"])
+        _draw_theory(spin, distance, data["theory"])
     for engine in engines_in(data):
         found = data[engine]
         if "six points" in found:
-            spin.plot(found["load"], found["six points"][:, 2], **points(engine, f"{engine}, six points"))
-        for name, look in (("ring", {"alpha": 0.55}), ("six points", {})):
-            if name in found:
-                ring = np.array([place_and_spin(with_load(RING, load)) for load in found["load"]])
-                away = np.maximum(np.abs(found[name] - ring)[:, 2], np.finfo(float).eps)
-                distance.plot(found["load"], away, **points(engine, f"{engine}, {name}", **look))
-        if "ring" in found:
-            plane.plot(*found["ring"][:, :2].T, **points(engine))
+            spin.plot(found["load"], found["six points"][:, 2], **points(engine))
+        for name in {"ring", "six points"} & set(found):
+            ring = np.array([place_and_spin(with_load(RING, load)) for load in found["load"]])
+            away = np.maximum(np.abs(found[name] - ring)[:, 2], np.finfo(float).eps)
+            distance.plot(found["load"], away, **points(engine))
     for speed, name in ((RING.disc_speed, r"master disc, $\omega$"), (RING.shaft_speed, r"shaft, $\Omega$")):
         spin.axhline(speed, color=GREY, linewidth=0.8, linestyle=":")
         spin.annotate(name, (0.001, speed), (0, -11), textcoords="offset points", fontsize=9.5)
@@ -73,26 +81,31 @@ def draw_spin(data: ByEngine) -> Figure:
     )
     distance.set(xlabel=load, ylabel="difference in rad/s", yscale="log", ylim=(1e-16, 1.0))
     distance.set(title="Spin minus spin on the continuous ring")
-    plane.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal", title="Positions of rest")
-    plane.set(xlim=(-0.005, 0.105), ylim=(-0.005, 0.066))
-    spin.legend(loc="upper left", bbox_to_anchor=(0.0, 0.89), fontsize=9.0)
-    distance.axhline(RESOLUTION, color=GREY, linewidth=0.9, linestyle="--", label="resolution of ring")
-    distance.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), fontsize=9.0, ncols=2)
-    plane.legend(loc="lower center", fontsize=9.0)
+    distance.axhline(RESOLUTION, color=GREY, linewidth=0.9, linestyle="--")
+    for panel, words, place, colour in (
+        (spin, "(26) as printed", (0.087, 0.636), GREY),
+        (spin, "(26) corrected", (0.042, 0.672), BLACK),
+        (spin, "ring", (0.047, 0.585), BLACK),
+        (distance, "(26), corrected and as printed", (0.02, 5e-2), BLACK),
+        (distance, "six points", (0.04, 2e-6), BLACK),
+        (distance, "resolution of the claim", (0.0, 3e-10), GREY),
+        (distance, "simulated ring", (0.04, 2e-12), BLACK),
+    ):
+        panel.text(*place, words, color=colour, fontsize=9.5)
+    spin.legend(loc="center left", fontsize=9.5)
     return figure
 
 
-def _draw_theory(spin: Axes, distance: Axes, plane: Axes, found: Data) -> None:
+def _draw_theory(spin: Axes, distance: Axes, found: Data) -> None:
     own = f"{RING.offset:g}"
-    corrected = curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2)
-    printed: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "label": "(26), as printed"}
-    spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", "continuous ring"))
+    corrected = curve("theory", "", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2)
+    printed: dict[str, Any] = {"color": GREY, "linewidth": 0.8}
+    spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", ""))
     spin.plot(found[f"corrected load {own}"], found[f"corrected {own}"][:, 2], **corrected)
     spin.plot(found["printed load"], found["printed"][:, 2], **printed)
     loads = found["distance load"][1:]
     distance.plot(loads, found["distance corrected"][1:, 2], **corrected)
     distance.plot(loads, found["distance printed"][1:, 2], **printed)
-    plane.plot(*found[f"ring {own}"][:, :2].T, **curve("theory", "semicircle (4)"))
 
 
 def draw_offsets(theory: Data) -> Figure:

@@ -8,19 +8,26 @@ import numpy as np
 import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.parameters import FIG11
-from compare.output.figures import Axes, Figure, axis, beside, engine_style, engines_in, new_figure, points
+from compare.output.figures import Axes, Figure, axis, engine_style, engines_in, new_figure, points
 from compare.studies.disc.stability_map.theory import ENDS
 from compare.studies.toolkit.fig11 import PLANES
 from reference_model.systems import FloatArray
 
-ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
-SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl decay": "v"}
-SHRINKING = "v"
+LETTERS = {"rotation": "R", "whirl": "W", "modulated cycle": "M", "sticking": "S"}
+"""Letter of each final motion, the first of its region's name."""
 
 COLOURS = {"ring": plots.GREEN, "(23)": plots.PURPLE}
 DASHES: dict[str, Any] = {"ring": "-", "(23)": (0.0, (5.0, 2.0))}
 NAMES = {"ring": "ring", "(23)": "eq. (23)"}
 SHADE = "#d3ece4"
+
+LABELS = (
+    ("inertia", "whirl unstable (ring)", (2.1, 0.0163), plots.GREEN),
+    ("inertia", "by (23)", (3.3, 0.0181), plots.PURPLE),
+    ("inertia", "rotation unstable below", (2.3, 0.01755), plots.BLACK),
+    ("inertia", "sticking possible below", (1.9, 0.0104), plots.GREY),
+)
+"""Names of the curves in one plane: its name, the words, their position and colour."""
 
 K = FIG11.natural_frequency
 
@@ -82,22 +89,11 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_map(data: ByEngine) -> Figure:
-    from matplotlib.lines import Line2D
-
-    figure, axes = new_figure(ncols=2, nrows=2, width=10.6, height=8.8)
+    figure, axes = new_figure(ncols=2, nrows=2, width=10.6, height=8.4)
     for (name, panel), panel_axes in zip(PANELS.items(), axes, strict=True):
         draw_plane(panel_axes, name, panel, data)
-    handles, _ = axes[0].get_legend_handles_labels()
-    marks: dict[str, Any] = {"color": plots.GREY, "linestyle": "none", "markerfacecolor": "none"}
-    if engines_in(data):
-        handles += [
-            Line2D([], [], marker=mark, label=words, **marks) for words, mark in (SIDES | ENDS_AS).items()
-        ]
-    handles += [
-        Line2D([], [], color=engine_style(engine).colour, linewidth=4.0, label=f"simulated: {engine}")
-        for engine in engines_in(data)
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9.5)
+    for name, words, place, colour in LABELS:
+        axes[list(PANELS).index(name)].text(*place, words, color=colour, fontsize=9.5, va="center")
     return figure
 
 
@@ -110,20 +106,21 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     )
     for law, colour in COLOURS.items():
         hopf: Any = {"color": colour, "linestyle": DASHES[law], "linewidth": 2.0, "zorder": 3.0}
-        draw_curves(axes, name, law, "Hopf", data, f"{NAMES[law]}: whirl loses its stability (Hopf)", **hopf)
-        fold = hopf | {"linestyle": ":", "linewidth": 1.3}
-        draw_curves(axes, name, law, "fold", data, f"{NAMES[law]}: two whirls meet (fold)", **fold)
+        draw_curves(axes, name, law, "Hopf", data, **hopf)
+        draw_curves(axes, name, law, "fold", data, **hopf | {"linestyle": ":", "linewidth": 1.3})
     onset: Any = {"color": plots.BLACK, "linewidth": 1.1, "zorder": 2.5}
-    draw_curves(axes, name, "ring", "onset", data, "both: rotation loses its stability (onset)", **onset)
+    draw_curves(axes, name, "ring", "onset", data, **onset)
     style: dict[str, Any] = {"color": plots.GREY, "linestyle": "-.", "linewidth": 1.2}
-    axes.plot(*sticking(name, x), label="largest shaft moment at which the disc sticks", **style)
+    axes.plot(*sticking(name, x), **style)
     if PLANES[name].names[0] == "disc_speed":
         axes.axvline(K, color=plots.SKY, linewidth=1.4)
         style = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
         axes.annotate(r"$\omega = k$", (K, 0.97), (5, 0), **style)
     here = np.array([[getattr(FIG11, parameter) for parameter in PLANES[name].names]])
-    star: dict[str, Any] = {"color": plots.BLACK, "markersize": 8.0, "linestyle": "none", "zorder": 4.0}
-    axes.plot(*shown(name, here), "*", label="Fig. 11", **star)
+    place: Any = {"color": plots.BLACK, "markersize": 19.0, "markerfacecolor": "none", "zorder": 4.0}
+    axes.plot(*shown(name, here), "o", **place)
+    (x_here,), (y_here,) = shown(name, here)
+    axes.annotate("Fig. 11", (x_here, y_here), (8, -11), textcoords="offset points", va="center")
     for rank, engine in enumerate(engines_in(data)):
         draw_dots(axes, name, engine, data[engine], rank)
     box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.15}
@@ -136,25 +133,21 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     axes.set(xlabel=panel.labels[0], ylabel=panel.labels[1], xlim=panel.x, ylim=panel.y)
 
 
-def draw_curves(axes: Axes, name: str, law: str, kind: str, data: ByEngine, label: str, **style: Any) -> None:
+def draw_curves(axes: Axes, name: str, law: str, kind: str, data: ByEngine, **style: Any) -> None:
     for curve in curves(data["theory"], name, law, kind):
-        axes.plot(*shown(name, curve), label=label, **style)
-        label = "_"
+        axes.plot(*shown(name, curve), **style)
 
 
 def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> None:
-    """Draw growth of deviations on the left of their points and ends on the right, after ``rank`` other engines."""
+    """Draw the growth (+) or decay (−) of deviations, and the letters of ends; later engines are larger."""
     none = np.empty((0, 3))
     sides, ends = found.get(f"sides/{name}", none), found.get(f"ends/{name}", none)
-    groups = [
-        *zip((sides[sides[:, 2] > 0.0], sides[sides[:, 2] <= 0.0]), SIDES.values(), strict=True),
-        *((ends[ends[:, 2] == code], mark) for code, mark in enumerate(ENDS_AS.values())),
-    ]
-    style: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "none", "zorder": 5.0}
-    style |= {"color": engine_style(engine).colour, "markersize": 5.0}
+    groups = [(sides[sides[:, 2] > 0.0], "$+$"), (sides[sides[:, 2] <= 0.0], "$-$")]
+    groups += [(ends[ends[:, 2] == code], f"${LETTERS[end]}$") for code, end in enumerate(ENDS)]
+    style: dict[str, Any] = {"linestyle": "none", "zorder": 5.0 - rank, "markeredgewidth": 0.6}
+    style |= {"color": engine_style(engine).colour, "markersize": 7.0 + 5.0 * rank}
     for chosen, mark in groups:
-        place = 1.0 + rank if mark in ENDS_AS.values() else -1.0 - 2.0 * rank - (mark == SHRINKING)
-        axes.plot(*shown(name, chosen), marker=mark, transform=beside(axes, place), **style)
+        axes.plot(*shown(name, chosen), marker=mark, **style)
 
 
 def curves(theory: Data, plane: str, law: str, kind: str) -> Iterator[FloatArray]:

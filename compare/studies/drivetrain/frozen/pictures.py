@@ -87,7 +87,9 @@ def draw_maps(theory: Data) -> Figure:
         panel.grid(visible=False)
     left.set(xlabel="engine speed in rpm", ylabel="torque in N m")
     left.set(title=f"Load {100.0 * frozen.SURPLUS:.0f} % more than the torque needs")
-    right.set(xscale="log", xlabel="relative surplus of the load", title=f"{frozen.SPEED:.0f} rpm")
+    right.set(
+        xscale="log", xlabel="load / load that the torque needs − 1", title=f"At {frozen.SPEED:.0f} rpm"
+    )
     for panel, words, where, colour in (
         (left, "no whirl: the clutch locks up", (0.05, 0.62), BLACK),
         (left, "on the stop", (0.62, 0.42), "white"),
@@ -101,7 +103,9 @@ def draw_maps(theory: Data) -> Figure:
     speed, torque, surplus = frozen.MODULATED
     left.plot(speed, torque, "*", color=BLACK, markersize=10.0)
     right.plot(surplus, torque, "*", color=BLACK, markersize=10.0)
-    bar = figure.colorbar(mesh, ax=[left, right], label="growth rate of the modulation in 1/s")
+    bar = figure.colorbar(
+        mesh, ax=[left, right], label="growth rate of the modulation in 1/s (blue: it decays)"
+    )
     bar.set_ticks([-1.0, -1e-1, -1e-2, 0.0, 1e-2, 1e-1, 1.0])
     bar.set_ticklabels(["−1", "−0.1", "−0.01", "0", "0.01", "0.1", "1"])
     return figure

@@ -1,14 +1,24 @@
 """Claims."""
 
 import functools
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 import compare.studies.engines.foreign_engines.theory as theory
-from compare.claims import ByEngine, Data, Figures, Measured, Study, extrapolated_order, observed_exponent
+from compare.claims import (
+    ByEngine,
+    Data,
+    Figures,
+    Measured,
+    Recorded,
+    Study,
+    extrapolated_order,
+    observed_exponent,
+)
 from compare.foreign import CASES, DIGITS, ERROR, SECONDS, STEPS
-from compare.output.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, Figure, new_figure
+from compare.output.figures import BLUE, GREY, ORANGE, Figure, new_figure
+from compare.report.at_a_glance import SHIPPED, best_of
 
 ORDER = (
     "Orders observed in successive halvings of the step, extrapolated to 0. Model error: the change due to "
@@ -91,7 +101,7 @@ def _orders(
     ]
     orders, numerical, model = np.transpose(found)
     words = ", ".join(
-        f"{name} ({case}): {order:.3f}" for (name, case), order in zip(runs, orders, strict=True)
+        f"{name} ({CASES[case].name}): {order:.3f}" for (name, case), order in zip(runs, orders, strict=True)
     )
     dates = " and ".join(sorted({by_name[name].recorded for name in wanted}))
     return Measured(
@@ -99,9 +109,9 @@ def _orders(
         value=orders,
         error=numerical,
         model=float(np.max(model)),
-        components=[f"{name} ({case})" for name, case in runs],
+        components=[f"{name} ({CASES[case].name})" for name, case in runs],
         system=CASES[cases[0]].system,
-        source=f"Recorded on {dates}; " + "; ".join(f"{case}: {CASES[case].title}" for case in cases),
+        source=f"Recorded on {dates}; " + "; ".join(CASES[case].name for case in cases),
         note=f"{words}.",
     )
 
@@ -155,7 +165,7 @@ def _as_far_off_as(law: theory.Law, case: str, wanted: tuple[str, ...]) -> Measu
         error=np.abs(extrapolated[:, 1] - extrapolated[:, 0]) + 3.0 * rounding + smoothing + unsettled,
         components=wanted,
         system=CASES[case].system,
-        source=f"Recorded: {', '.join(wanted)}; {CASES[case].title}",
+        source=f"Recorded: {', '.join(wanted)}; {CASES[case].name}",
         named={f"{case} by {name.replace(',', '')}": i for i, name in enumerate(wanted)},
     )
 
@@ -185,7 +195,7 @@ def holds_longer() -> Measured:
         error=errors,
         components=("by a box", "by a pyramid"),
         system=CASES["release"].system,
-        source=CASES["release"].title,
+        source=CASES["release"].name,
     )
 
 
@@ -216,56 +226,57 @@ def creeps() -> Measured:
     )
 
 
-ROWS = (
-    *(("Bullet", "ODE"), ("DART",), ("Drake",), ("MuJoCo",)),
-    *(("Box2D", "Chipmunk", "planck"), ("Jolt", "Rapier", "cannon-es")),
-)
-"""Engines of the rows, each with up to six settings."""
-
-LOOKS = tuple(zip((BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK), "os^Dvx", strict=True))
-
-OURS = {"reference": "-", "exudyn": "--", "exudyn-native": ":"}
-"""Line styles of our own engines, which every panel shows in grey."""
+PANELS = {
+    "foreign-engines-pin": "slip",
+    "foreign-engines-stick": "stick-slip",
+    "foreign-engines-disc": "disc",
+}
+"""Motion of each figure, whose panels show one foreign engine each."""
 
 
 def draw(data: ByEngine) -> Figures:
     if "theory" not in data:
         return {}
-    cases = {
-        "foreign-engines-pin": {"slip": "Sliding pin", "stick-slip": "Pin that sticks nine times"},
-        "foreign-engines-disc": {"disc": "Disc on six points"},
-    }
-    return {name: _small_multiples(data["theory"], titles) for name, titles in cases.items()}
+    settings = theory.recorded_settings()
+    return {name: _by_engine(data["theory"], settings, case) for name, case in PANELS.items()}
 
 
-def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
-    columns = len(titles)
-    simulated = {
-        name.partition(",")[0]
-        for name, _, case in (key.rpartition(": ") for key in ladders)
-        if case in titles
-    }
-    rows = [row for row in ROWS if simulated.intersection(row)]
-    width, height = 3.6 * columns + 2.4, 2.2 * len(rows)
-    figure, axes = new_figure(columns, len(rows), width=width, height=height, sharex="col", sharey=True)
-    for i, panel in enumerate(axes):
-        case = list(titles)[i % columns]
-        names = [key.removesuffix(f": {case}") for key in ladders if key.endswith(f": {case}")]
-        for name in OURS:
-            if name in names:
-                panel.loglog(*ladders[f"{name}: {case}"].T, color=GREY, linestyle=OURS[name], label=name)
-        shown = [name for name in names if name not in OURS and name.partition(",")[0] in rows[i // columns]]
-        for name, (colour, marker) in zip(shown, LOOKS[: len(shown)], strict=True):
-            look: dict[str, Any] = {"color": colour, "marker": marker, "markerfacecolor": "none"}
-            panel.loglog(*ladders[f"{name}: {case}"].T, label=name, linewidth=1.0, markersize=4.5, **look)
-        if i < columns:
-            panel.set_title(titles[case])
-        if i >= len(axes) - columns:
-            panel.set_xlabel("time on one core in s")
-        if i % columns == 0:
-            panel.set_ylabel("largest error in m")
-        if (i + 1) % columns == 0:
-            panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9.0)
+def _by_engine(ladders: Data, settings: Sequence[Recorded], case: str) -> Figure:
+    """Draw the best setting and the one as shipped in colour, other settings and the reference in grey."""
+    by_engine: dict[str, list[Recorded]] = {}
+    for one in settings:
+        if one.setting and f"{one.engine}, {one.setting}: {case}" in ladders:
+            by_engine.setdefault(one.engine, []).append(one)
+    rows = -(-len(by_engine) // 4)
+    figure, panels = new_figure(4, rows, width=11.0, height=2.5 * rows, sharex=True, sharey=True)
+    for panel, (engine, found) in zip(panels, by_engine.items(), strict=False):
+        best = best_of(found)
+        panel.loglog(*ladders[f"reference: {case}"].T, color=GREY, linestyle=":", linewidth=1.0)
+        for one in sorted(found, key=lambda one: (one is best, one.shipped)):
+            colour = BLUE if one is best else ORANGE if one.shipped else GREY
+            name = f"{one.engine}, {one.setting}"
+            runs = ladders[f"{name}: {case}"]
+            panel.loglog(
+                *runs.T, color=colour, marker="." if colour != GREY else "", linewidth=1.0, label=name
+            )
+            if colour != GREY:
+                said = (
+                    one.setting if colour == BLUE or one.setting == SHIPPED else f"{one.setting} (as shipped)"
+                )
+                place, up = (runs[-1], -1.0) if colour == BLUE else (runs[0], 1.0)
+                panel.annotate(
+                    said, place, xytext=(2.0, 7.0 * up), textcoords="offset points", color=colour, fontsize=8.5,
+                    ha="right" if colour == BLUE else "left", va="top" if colour == BLUE else "bottom",
+                )  # fmt: skip
+        panel.set_title(engine)
+    reference = ladders[f"reference: {case}"][-1]
+    panels[0].annotate(
+        "reference", reference, xytext=(6.0, 0.0), textcoords="offset points", color=GREY, fontsize=8.5
+    )
+    for panel in panels[len(by_engine) :]:
+        panel.set_visible(False)
+    figure.supxlabel("time on one core in s", fontsize=11.0)
+    figure.supylabel("largest error in m", fontsize=11.0)
     return figure
 
 

@@ -2,7 +2,7 @@
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +14,7 @@ from compare.claims import ROUNDING, Claim, ErrorBudget, Recorded, refined
 from compare.claims.claim import Verdict
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Table
+from compare.diagnosis.run import row_of
 from compare.engines import INSTALLED
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Case, Recording, estimate, recordings
 from compare.report.numbers import error_text
@@ -199,6 +200,9 @@ def error_of(law: Law, case: Case) -> tuple[float, float]:
 
 OUR_FORCE = "our force"
 
+AS_SHIPPED = ("Drake, lagged",)
+"""Default settings with a name."""
+
 PROGRAM = "examples/exec_contact.js"
 ADAPTERS = {
     **{known.title: f"compare/engines/live/{name}_engine.py" for name, known in INSTALLED.items()},
@@ -207,23 +211,14 @@ ADAPTERS = {
 }
 """Files that run the recorded engines, relative to the folder of the packages; the others run in ``PROGRAM``."""
 
-IN_SHORT = {
-    "slip": ("slides", "slip"),
-    "stick-slip": ("sticks 9 times", "stick"),
-    "whirl": ("whirls", "slip"),
-    "stuck": ("stays stuck", "stick"),
-    "release": ("is released", "stick"),
-    "disc": ("disc, 6 points", "slip"),
-}
-"""Short name of each case, and whether the pin slips or sticks."""
-
 
 def recorded_settings() -> tuple[Recorded, ...]:
     return tuple(recorded_claims(recording) for recording in recorded())
 
 
 def recorded_claims(recording: Recording) -> Recorded:
-    claims = []
+    claims, row = [], row_of(recording)
+    sentences = {name: CASES[name].sentence for name in recording.runs}
     for name, runs in recording.runs.items():
         case = CASES[name]
         rounding = ROUNDING * max(map(abs, case.start))
@@ -241,10 +236,11 @@ def recorded_claims(recording: Recording) -> Recorded:
                 parameters=parameters_of(case.system)
                 | {"tolerance": float(runs[-1, TOLERANCE]), "steps": float(runs[-1, STEPS])},
                 source=f"Recorded on {recording.recorded} with {recording.engine} {recording.version}, "
-                f"{recording.platform}; {case.title}",
+                f"{recording.platform}; {case.name}",
                 unit="m",
-                note="Largest deviation of the finest run from the exact motion over time. Numerical error: twice "
-                "that of Richardson's extrapolation, with the order that fits the last three changes. "
+                note="Largest deviation from the exact motion over time, at the smallest step or tolerance. "
+                "Numerical error: twice that of Richardson's extrapolation, with the order that fits the last three "
+                "changes. "
                 "Resolution: a tenth of the effect of another friction law, or of a release. A deviation below a "
                 "tenth of the resolution is negligible.",
             )
@@ -257,7 +253,10 @@ def recorded_claims(recording: Recording) -> Recorded:
         recording.recorded,
         tuple(claims),
         own=recording.setting != OUR_FORCE,
-        cases={CASES[name].sentence: words for name, words in IN_SHORT.items()},
+        shipped=recording.name in AS_SHIPPED or recording.setting in ("", "as shipped"),
+        cases={case.sentence: (case.name, case.truth) for case in CASES.values()},
+        reasons={sentences[name]: why for name in row.motions if (why := row.reason(name))},
+        costs={sentences[name]: _cost(recording, name) for name in recording.runs},
         law=law["shape"] if law.get("sure") else "",
         says=recording.says,
         adapter=ADAPTERS.get(recording.engine, PROGRAM),
@@ -279,23 +278,28 @@ def _advice(recording: Recording, claims: Sequence[Claim]) -> str:
     runs = {CASES[name]: rows for name, rows in recording.runs.items() if CASES[name].sentence in right}
     if not runs or recording.engine == "reference":
         return ""
-    coarsest, rows = max(runs.items(), key=lambda one: float(one[1][-1, ERROR]))
-    fixed = len(halvings(recording.runs["slip"])) > 2
+    worst, rows = max(runs.items(), key=lambda one: float(one[1][-1, ERROR]))
     if rows[-1, ERROR] > WANTED:
-        finest = f"{_rounded(rows[-1, STEPS] / _periods(coarsest))} steps per natural period"
-        with_it = finest if fixed else f"a tolerance of {error_text(rows[-1, TOLERANCE], 1)}"
-        return f"with {with_it} the error is {error_text(rows[-1, ERROR], 1)} m"
+        return (
+            f"with {_refinement(recording, worst, rows[-1])} the error is {error_text(rows[-1, ERROR], 1)} m"
+        )
     for_it = f"for an error of {1e3 * WANTED:g} mm"
-    if fixed:
+    if recording.step is not None:
         number = max(_at(WANTED, rows, STEPS) / _periods(case) for case, rows in runs.items())
         return f"use {_rounded(number)} steps per natural period {for_it}"
     tolerance = min(_at(WANTED, rows, TOLERANCE) for rows in runs.values())
-    if recording.setting:
-        return f"use a tolerance of {error_text(tolerance, 1)} {for_it}"
-    from exudyn_models.paper.simulate import REGULARISATION_PER_TOLERANCE  # deferred: it imports Exudyn
+    return f"use a tolerance of {error_text(tolerance, 1)} {for_it}"
 
-    epsilon = error_text(REGULARISATION_PER_TOLERANCE * tolerance, 1)
-    return f"use ε ≤ {epsilon} of the typical speed {for_it}"
+
+def _refinement(recording: Recording, case: Case, run: FloatArray) -> str:
+    if recording.step is None:
+        return f"a tolerance of {error_text(run[TOLERANCE], 1)}"
+    return f"{_rounded(run[STEPS] / _periods(case))} steps per natural period"
+
+
+def _cost(recording: Recording, name: str) -> str:
+    run = recording.runs[name][-1]
+    return f"{_refinement(recording, CASES[name], run)}, {error_text(run[SECONDS], 1)} s"
 
 
 def _rounded(number: float) -> str:
@@ -318,30 +322,35 @@ def _at(wanted: float, runs: FloatArray, column: int) -> float:
     return math.exp(np.interp(math.log(wanted), error[::-1], values[::-1]))
 
 
-def _finest(runs: FloatArray) -> str:
-    steps, error = runs[:, STEPS], runs[:, ERROR]
-    if len(runs) == 1 or not np.all(error[-2:] > 0.0):
-        return f"{error[-1]:.1g}"
-    order = math.log(error[-2] / error[-1]) / math.log(steps[-1] / steps[-2])
-    return f"{error[-1]:.2g} ± {estimate(runs):.1g}, order {order:.1f}"
-
-
 def time_to(wanted: float, runs: FloatArray) -> str:
     if math.isnan(seconds := _at(wanted, runs, SECONDS)):
         return "not reached"
     return f"{'≤ ' * bool(runs[0, ERROR] <= wanted)}{1e3 * seconds:.3g}"
 
 
-def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> list[str]:
-    return [words(recording.runs[case]) if case in recording.runs else "not simulated" for case in CASES]
+def _best_run(recording: Recording) -> Iterator[str]:
+    motions, refined = row_of(recording).motions, "tolerance" if recording.step is None else "step"
+    for name, runs in recording.runs.items():
+        order = motions[name].order
+        fitted = f", order {order:.1f} in the {refined}" if math.isfinite(order) else ""
+        yield f"{runs[-1, ERROR]:.2g} ± {estimate(runs):.1g}{fitted}; {_cost(recording, name)}"
+
+
+def _of_each_case(recording: Recording, words: Iterable[str]) -> list[str]:
+    found = dict(zip(recording.runs, words, strict=True))
+    return [found.get(case, "not simulated") for case in CASES]
 
 
 def tables() -> tuple[Table, ...]:
-    titles = tuple(case.title for case in CASES.values())
-    finest = tuple((recording.name, *_of_each_case(recording, _finest)) for recording in recorded())
+    titles = tuple(case.name for case in CASES.values())
+    ends = {one.engine: one.runs["slip"][-2:, STEPS] for one in recorded() if one.step is not None}
+    uneven = ", ".join(
+        sorted(engine for engine, (before, last) in ends.items() if last / before < 2.0 - HALVED)
+    )
+    best = tuple((one.name, *_of_each_case(one, _best_run(one))) for one in recorded())
     cost = tuple(
-        (recording.name, *_of_each_case(recording, functools.partial(time_to, WANTED)))
-        for recording in recorded()
+        (one.name, *_of_each_case(one, (time_to(WANTED, runs) for runs in one.runs.values())))
+        for one in recorded()
     )
     how = tuple(
         (recording.name, recording.version, recording.says, f"{recording.recorded}, {recording.platform}")
@@ -349,11 +358,12 @@ def tables() -> tuple[Table, ...]:
     )
     return (
         Table(
-            "Largest deviation over time of the finest run from the exact motion, in m, ± twice the error by "
-            "Richardson's extrapolation of its last changes. The verdicts in the matrix follow from these numbers. "
-            "Orders refer to the number of steps and come from the last refinement.",
+            "Largest deviation from the exact motion over time in m, at the smallest step or tolerance, ± twice the "
+            "error by Richardson's extrapolation of its last changes. The verdicts in the matrix follow from these "
+            "numbers. Orders are fitted to the last two refinements, with the steps that were used. Fixed steps are "
+            f"halved, except that the last step of {uneven} is a limit. Times are those of one core.",
             ("Engine, setting", *titles),
-            finest,
+            best,
         ),
         Table(f"Time in ms on one core for an error of {WANTED:g} m.", ("Engine, setting", *titles), cost),
         Table("Settings and recording.", ("Engine, setting", "Version", "Setting", "Recorded"), how),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import BLACK, GREY, ORANGE, Axes, Figure, axis, curve, new_figure
+from compare.output.figures import BLACK, BLUE, GREY, ORANGE, Axes, Figure, axis, curve, new_figure
 from compare.output.limit_surface import draw_limit_surface
 from compare.studies.plane.pushes.theory import (
     LEGS,
@@ -38,12 +38,15 @@ def _forces() -> Figure:
                 arrow = complex(push.end_x, push.end_y) - LENGTH * wrench.force * np.array([1.0, 0.0])
                 panel.plot(arrow.real, arrow.imag, color=colour, linewidth=0.9)
         panel.set(xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal", title=_title(series))
-    panels[0].plot([], [], color=BLACK, label="measured")
-    panels[0].plot([], [], color=ORANGE, label="Coulomb's law")
-    panels[0].legend(loc="upper right")
+    for place, words, colour in ((0.97, "measured", BLACK), (0.91, "Coulomb's law", ORANGE)):
+        for panel in (panels[0], panels[-1]):
+            panel.text(0.97, place, words, color=colour, transform=panel.transAxes, ha="right", va="top")
     _limit_surface(panels[-1], SHOWN[0])
     return figure
 
+
+SURFACES = {"board": BLUE, "wood": ORANGE}
+"""Colour of each surface."""
 
 LENGTH = 6.0
 """Length of arrows in mm/N."""
@@ -61,16 +64,22 @@ def _limit_surface(panel: Axes, series: str) -> None:
 def _errors(positions: Data) -> Figure:
     figure, panels = new_figure(ncols=3 if positions else 2, width=13.2 if positions else 9.6, height=3.8)
     for series, pushes in by_series().items():
-        dashes = "--" if surface(series) == "wood" else "-"
-        panels[0].ecdf(errors(pushes, force_error), label=_title(series), linestyle=dashes)
+        colour, width = SURFACES[surface(series)], 1.0 if feet(series) else 2.4
+        panels[0].ecdf(errors(pushes, force_error), color=colour, linewidth=width)
         theory, found = ([abs(law(push).force) for push in pushes] for law in (coulomb, measured))
-        panels[1].plot(theory, found, "x" if dashes == "--" else ".", markersize=4, label=_title(series))
+        panels[1].plot(theory, found, "." if feet(series) else "x", markersize=4.0, color=colour)
+    for place, words, colour in (
+        ((17.0, 0.36), "on the board", SURFACES["board"]),
+        ((17.0, 0.28), "on wood", SURFACES["wood"]),
+        ((17.0, 0.12), "thick: whole face\nthin: three feet", BLACK),
+    ):
+        panels[0].text(*place, words, color=colour)
+    panels[1].text(1.2, 1.35, "equal", color=GREY, rotation=28.0)
     panels[0].set(
         xlabel="error of the force's direction in degrees", ylabel="share of the pushes", xlim=(0.0, 45.0)
     )
     panels[1].plot([0.0, 5.0], [0.0, 5.0], color=GREY, linewidth=0.9)
     panels[1].set(xlabel="predicted force in N", ylabel="measured force in N")
-    panels[0].legend(loc="lower right", fontsize="x-small")
     for engine, distances in positions.items():
         panels[2].ecdf(distances, **curve(engine))
         panels[2].set(xlabel="error of the final position in mm", ylabel="share of the pushes")

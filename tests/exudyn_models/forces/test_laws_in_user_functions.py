@@ -1,4 +1,4 @@
-"""Coefficients and loads in compiled code: Python and numba functions, and their errors."""
+"""Coefficients and loads in the user functions of Exudyn: Python and numba functions, and their errors."""
 
 import math
 import subprocess
@@ -12,11 +12,8 @@ import pytest
 from pairs_of_bodies import bodies_of
 
 from exudyn_models import add_ring_friction
-from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
-from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 
 RING = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": 2.0, "regularisation": 1e-3}
-TABLE = [[0.0, 0.5], [0.05, 0.35], [0.2, 0.3], [1.0, 0.28], [40.0, 0.4]]
 PAIRS = [*product((None, "rotor"), ("rotor", "planar")), ("planar", "planar"), ("planar", "Tait-Bryan")]
 """Pairs with specialised functions, and one example of the others."""
 
@@ -30,7 +27,7 @@ def all_of_them(time, radius, slip_speed, relative_spin):
 
 
 # Compiled once for all pairs of bodies.
-TWO_BY_NUMBA, OF_TIME_BY_NUMBA = numba.njit(lambda radius: 2), numba.njit(lambda time: 1.0 + time)
+TWO_BY_NUMBA = numba.njit(lambda radius: 2)
 LAW = {"friction_coefficient": stribeck, "normal_load": all_of_them}
 LAW_BY_NUMBA = {name: numba.njit(function) for name, function in LAW.items()}
 
@@ -65,19 +62,6 @@ def test_a_function_gives_the_force_of_its_number_and_one_of_numba_that_of_pytho
     assert np.abs(by_python - constant).max() > 0.1 * np.abs(constant).max()
 
 
-def test_a_contact_says_whether_python_is_asked():
-    for law, compiled in (
-        ({}, True),
-        ({"friction_coefficient": TABLE, "normal_load": OF_TIME_BY_NUMBA, "static_ratio": 1.2}, True),
-        ({"friction_coefficient": TABLE, "normal_load": lambda time: 1.0}, False),
-        ({"friction_coefficient": stribeck, "normal_load": OF_TIME_BY_NUMBA}, False),
-    ):
-        _, friction = added(("planar", "planar"), **law)
-        assert friction.compiled is compiled
-        friction.change(friction_coefficient=0.2, normal_load=3.0)
-        assert friction.compiled
-
-
 @numba.njit
 def out_of_range(time):
     if time > 0.5:
@@ -98,20 +82,13 @@ def test_errors_of_functions_are_passed_on_and_invalid_numbers_reported(kinds, f
         force(mbs, 0.25, 0, *state)
 
 
-@pytest.mark.parametrize("kinds", [("rotor", "rotor"), ("planar", "planar")])
+@pytest.mark.parametrize("kinds", [("rotor", "planar"), ("planar", "planar")])
 def test_anything_but_a_list_of_all_velocities_is_a_type_error(kinds):
     mbs, friction = added(kinds, normal_load=lambda radius: 2.0)
     force, size = friction._contact.functions["force"], len(friction._contact.reference)
     for wrong in ([0.1] * (size - 1), [0.1] * 15, ["a"] * size, (0.1,) * size, None):
         with pytest.raises(TypeError):
             force(mbs, 0.7, 0, [0.1] * size, wrong)
-
-
-def test_a_table_outlives_its_source():
-    contact = (0.12, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.12)
-    laws = [LoadAndCoefficient(contact, [[0.0, 0.1 * i], [1.0, 0.1 * i]], 1.0) for i in range(200)]
-    found = [law.friction_force(0.0, 0.0, 0.5, 0.0) for law in laws]
-    np.testing.assert_allclose(found, 0.1 * np.arange(200), rtol=1e-14)
 
 
 USE_OF_ALL_PARTS = """
