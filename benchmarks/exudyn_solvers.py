@@ -1,6 +1,6 @@
 """Effects of solver, step and regularisation on a clutch that slips and then sticks.
 
-Run with ``python benchmarks/exudyn_solvers.py``; prints the table of docs/friction-in-your-own-model.md.
+Run with ``python benchmarks/exudyn_solvers.py``; prints more rows of the table in docs/friction-in-your-own-model.md.
 """
 
 from __future__ import annotations

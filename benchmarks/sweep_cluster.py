@@ -26,7 +26,7 @@ from compare.sweep.store import SweepStore
 
 ROOT = Path(__file__).parents[1]
 
-SWEEPS = ((50, 2000), (50, 8000), (50, 32768), (306, 32768))
+SWEEPS = ((50, 2000), (306, 32768))
 """Numbers of chunks and of starts per chunk; the last is a sweep of ten million."""
 
 LARGE = (1_000_000, 10_000_000)

@@ -1,6 +1,6 @@
 """Error of explicit coupling of a clutch unit against the communication step, and chatter of a holding clutch.
 
-Run with ``python benchmarks/unit_coupling.py``; prints both tables of ``docs/fmu.md`` within a few seconds.
+Run with ``python benchmarks/unit_coupling.py``; prints the numbers of ``docs/fmu.md`` within a few seconds.
 """
 
 import tempfile

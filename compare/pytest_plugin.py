@@ -197,7 +197,7 @@ class StudyFile(pytest.File):
     study: Study
 
     def collect(self) -> Iterator[ClaimTest]:
-        """Yield a test for each sentence and engine; its name contains the engine unless there is only one."""
+        """Yield a test for each sentence and engine; its name contains the engine if there are several."""
         engines = _engines(self.config)
         for engine in engines:
             if self.study.only and engine not in self.study.only:

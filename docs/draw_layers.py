@@ -34,7 +34,7 @@ WIDTH, HEIGHT, LINE, GAP = 2.0, 0.6, 1.2, 0.25
 
 
 BETWEEN = {
-    ("compare", "exudyn_models"): ((7.0, 3.4), (8.3, 3.4), 0.2),
+    ("compare", "exudyn_models"): ((6.4, 3.4), (8.3, 3.4), 0.2),
     ("compare", "fmu_models"): ((7.0, 9.9), (9.0, 9.9), 0.2),
     ("compare", "reference_model"): ((7.0, 6.1), (14.9, 6.1), 0.2),
     ("fmu_models", "reference_model"): ((12.3, 7.5), (14.9, 7.5), 0.2),
@@ -119,9 +119,10 @@ def reaches(arrows, here, there):
 
 def draw():
     """Return the figure."""
-    figure = Figure(figsize=(11.0, 6.6), layout="constrained")
-    panel = figure.subplots()
     middle = places()
+    top = max(y for _, y in middle.values()) + LINE  # leaves room for the name of a package
+    figure = Figure(figsize=(11.0, 0.58 * top), layout="constrained")
+    panel = figure.subplots()
     inside = {pair for pair in imports() if pair[0].split(".")[0] == pair[1].split(".")[0]}
     for here, there in sorted(inside):
         (x, y), (to_x, to_y) = middle[here], middle[there]
@@ -164,7 +165,7 @@ def draw():
         panel.text(
             (x + to_x) / 2, (y + to_y) / 2 + beside, words, ha="center", va="bottom", fontsize=8, color="0.4"
         )
-    panel.set(xlim=(-0.2, 20.8), ylim=(-0.1, 11.4))
+    panel.set(xlim=(-0.2, 20.8), ylim=(-0.1, top))
     panel.axis("off")
     return figure
 

@@ -1,8 +1,8 @@
 """The paper's systems as multibody models in Exudyn, and parts for your own models.
 
 All public names are exported here. Importing the package replaces ``exudyn.MainSystem.Assemble`` in the whole process
-by a method that lets the package's parts forget the numbers of their coordinates and then calls Exudyn's. Models
-without these parts assemble as before. The names come from these packages:
+by a method that lets the package's parts forget the numbers of their coordinates and then calls Exudyn's method.
+Models without these parts assemble as before. The names come from these packages:
 
 - ``parts``: friction, radial support, heat capacity and energy balance for your model. Importing it also defines
   ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.

@@ -38,7 +38,7 @@ class HeadersMissingError(ValueError):
 
 @dataclass(frozen=True)
 class Exported:
-    """A unit in ``file``, with a library for ``platform``; if that is "", ``remark`` says why."""
+    """A unit in ``file``, with a library for ``platform``; if ``platform`` is "", ``remark`` says why."""
 
     file: Path
     platform: str
@@ -51,7 +51,7 @@ def sources_of(model: Model, fmi: Fmi) -> tuple[str, ...]:
 
 
 def write_sources(model: Model, folder: Path) -> None:
-    """Write all C files and headers except those of the standard into ``folder``."""
+    """Write all C files and headers except the headers of the standard into ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     for path in (*FOLDER.glob("*.h"), *(FOLDER / name for name in (model.source, *SHARED))):
         shutil.copyfile(path, folder / path.name)

@@ -24,7 +24,7 @@ BROKEN = "int broken_rule(const double v[], char *sentence, size_t size)"
 
 
 def header(model: Model, token: str) -> str:
-    """Return the text of ``variables.h``; ``token`` must be that of the description."""
+    """Return the text of ``variables.h``; ``token`` must agree with the description."""
     return "\n".join(
         [
             "/* Generated from the table of variables: the value reference of each. */",

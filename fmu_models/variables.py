@@ -81,7 +81,7 @@ class Model:
         return tuple(one for one in self.variables if one.role in roles)
 
     def starting(self, **values: float) -> Model:
-        """Return the model with other start values; raise ``ValueError`` if one is unknown or invalid."""
+        """Return the model with other start values; raise ``ValueError`` for an unknown name or an invalid value."""
         known = {one.name: one for one in self.variables if one.settable}
         for name, value in values.items():
             if name not in known:

@@ -96,7 +96,8 @@ _HOMES = (
     "steady.steady_states", "orbits.whirl", "orbits.shooting", "orbits.release_map", "orbits.basin_boundary",
     "orbits.shock",
 )  # fmt: skip
-"""The modules of these names; each is searched after those that it imports. Packages would find modules too."""
+"""The modules of these names; each module is searched after the modules that it imports. ``find_packages`` would also
+find modules."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,6 +1,6 @@
 """Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
 
-There is one change: friction divides by ε if the slip speed is smaller, so a sticking body creeps slower than ε.
+There is one change: below a slip speed ε, friction is divided by ε, so a sticking body creeps more slowly than ε.
 """
 
 import math

@@ -23,7 +23,7 @@ _interpreted = 0.0
 
 
 def prepare() -> None:
-    """Compile now, unless this machine has the compiled code: for whatever will simulate many motions."""
+    """Compile now, unless this machine has the compiled code; call this before many simulations."""
     if not is_compiled():
         pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.0, disc_speed=0.0)
         simulate(pin, [0.0] * pin.state_size, [0.0], compiled=True)

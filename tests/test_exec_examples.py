@@ -18,7 +18,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
 NODE = shutil.which("node")
 
-DRAWN = "with parameters from the whole range"
+DRAWN = "with random parameters"
 
 in_c = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
 in_javascript = pytest.mark.skipif(NODE is None, reason="there is no node")

@@ -46,6 +46,18 @@ def test_the_paper_refers_only_to_what_exists():
         assert set(referred) <= set(existing), kind
 
 
+def test_the_paper_about_the_software_contains_the_present_numbers_and_cites_all_its_references():
+    text = (PAPER / "paper.md").read_text(encoding="utf-8")
+    script = runpy.run_path(str(PAPER / "build.py"))
+    assert len(script["NAMED"].findall(text)) >= 8
+    assert script["filled"](text) == text, "run python docs/paper/build.py"
+    entries = re.findall(r"^@\w+\{(\w+),", (PAPER / "paper.bib").read_text(encoding="utf-8"), re.MULTILINE)
+    assert set(re.findall(r"(?<!\w)@([a-z]+)", text)) == set(entries)
+    assert all((PAPER / path).exists() for path in re.findall(r"\]\((\S+\.png)\)", text))
+    for heading in ("Summary", "Statement of need", "State of the field", "References"):
+        assert f"\n# {heading}\n" in text
+
+
 def test_the_paper_without_a_report_lists_missing_numbers(monkeypatch, capsys, tmp_path):
     script = runpy.run_path(str(PAPER / "build.py"))
     monkeypatch.setitem(script["main"].__globals__, "FIGURES", tmp_path)

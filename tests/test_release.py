@@ -1,5 +1,6 @@
 """The release: one version, a citation, tested version ranges, and all files in wheel and source archive."""
 
+import json
 import re
 import runpy
 import subprocess
@@ -7,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 import reference_model
 
@@ -50,11 +52,25 @@ def short(version):
     return re.sub(r"(\.0)+$", "", version)
 
 
-def test_the_version_is_in_one_place():
+def test_citation_archive_and_changelog_agree_on_the_version_and_on_its_description():
     assert "version" not in PROJECT["project"]
     assert PROJECT["tool"]["setuptools"]["dynamic"]["version"]["attr"] == "reference_model.__version__"
-    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    assert re.findall(r"^version: (\S+)$", citation, re.MULTILINE) == [reference_model.__version__]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    archive = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    latest = re.search(r"^## (\S+)$", changelog, re.MULTILINE)[1]
+    assert citation["version"] == archive["version"] == latest == reference_model.__version__
+    for name in ("title", "license", "keywords"):
+        assert citation[name] == archive[name]
+    assert citation["authors"] == archive["creators"] == PROJECT["project"]["authors"]
+    assert citation["abstract"] == archive["description"]
+
+
+def test_classifiers_name_only_the_system_that_the_workflow_tests():
+    workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "test.yml").read_text(encoding="utf-8"))
+    assert {job["runs-on"] for job in workflow["jobs"].values()} == {"ubuntu-latest"}
+    systems = [each for each in PROJECT["project"]["classifiers"] if each.startswith("Operating System")]
+    assert systems == ["Operating System :: POSIX :: Linux"]
 
 
 def test_the_oldest_versions_are_the_lower_ends_of_the_ranges():

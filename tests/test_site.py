@@ -1,5 +1,6 @@
 """The site's pages link to each other; Sphinx itself runs in a workflow, where a warning is an error."""
 
+import ast
 import importlib
 import json
 import runpy
@@ -75,6 +76,28 @@ def test_the_pages_made_from_the_program_contain_the_help_and_the_citation(gathe
         assert "Options:" in section
         assert "Example" in section
     assert "@software{" in (gathered / "cite.md").read_text(encoding="utf-8")
+
+
+def test_every_module_and_every_benchmark_with_its_figures_has_a_place(gathered):
+    modules = (gathered / "modules").with_suffix(".md").read_text(encoding="utf-8")
+    packages = ("reference_model", "exudyn_models", "fmu_models", "compare")
+    assert modules.count("\n| `") == sum(len([*(ROOT / name).rglob("*.py")]) for name in packages)
+    assert "|  |" not in modules  # each has a docstring
+    benchmarks = (gathered / "benchmarks").with_suffix(".md").read_text(encoding="utf-8")
+    assert "\n## ensemble_discs\n" in benchmarks
+    assert "| ring, Figs. 8, 9, 11 |" in benchmarks
+
+
+def test_the_gallery_links_notebooks_that_compute_print_and_draw_without_arguments(gathered):
+    gallery = (gathered / "gallery").with_suffix(".md").read_text(encoding="utf-8")
+    examples = sorted((ROOT / "examples").glob("*.py"))
+    for path in examples:
+        assert f"](notebooks/{path.name}), <a href=" in gallery
+        text = (gathered / "notebooks" / path.name).read_text(encoding="utf-8")
+        assert "sys.argv" not in text
+        assert ('\ndraw("picture.png")\n' in text) == ("def draw(" in text)
+        assert "print(" in text or "print(" not in path.read_text(encoding="utf-8")
+        ast.parse(text)
 
 
 def test_names_of_claims_lead_to_the_report(site, tmp_path, monkeypatch):

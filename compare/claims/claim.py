@@ -285,7 +285,7 @@ class Claim:
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Verdict: differs beyond both budget and resolution, or without a number.
+        """Verdict; a claim differs if it exceeds both budget and resolution, or if a number is missing.
 
         A budget beyond the resolution must be exceeded ``budget.doubt`` times. Otherwise the claim agrees if the
         budget is finite, covers the difference and lies within the resolution or a grade, else it is inconclusive.
@@ -299,7 +299,7 @@ class Claim:
 
     @property
     def _open(self) -> NDArray[np.bool_]:
-        """True without an error estimate, or if a number appears at one tolerance only."""
+        """True if there is no error estimate, or if a number appears at one tolerance only."""
         total = self.budget.total
         return np.asarray(np.isfinite(self.measured) & np.isnan(total) | np.isinf(total))
 

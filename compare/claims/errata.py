@@ -172,8 +172,8 @@ ERRATA: tuple[Erratum, ...] = (
         "(18), neglected harmonic",
         printed="x_s = X0/(1 + β²ω²/(4mC(ω−k)²)), y_s = βωx_s/(2mk(ω−k))",
         correct="x_s + iy_s = X0·conj[(6 − id(w+2)) / (6 + 2d²w + 2id(w−1))], d = β/(mk), w = ω/(ω−k)",
-        explanation="The offset excites a second harmonic of the same first order in X0, coupled to the mean "
-        "through friction. (18) keeps the first harmonic only. The correction solves (12) with the offset as "
+        explanation="The offset also excites a second harmonic. It is of first order in X0 too, and friction couples "
+        "it to the mean. (18) keeps the first harmonic only. The correction solves (12) with the offset as "
         "forcing. The relative error of (18) does not vanish as X0 → 0. It is zero at ω = 2k and tends to 1 as ω "
         "→ k.",
         evidence=_shift_of_the_whirl,
@@ -200,9 +200,9 @@ ERRATA: tuple[Erratum, ...] = (
         'Section 5, "still remains stable"',
         printed="the self-centred equilibrium of the disc is stable at high speeds too",
         correct="for ω > k only up to a load: 0.0210 N at Fig. 9's parameters with X0 = 0.1 m",
-        explanation="If the centre of a ring slips faster, friction in the direction of its slip increases by "
-        "μN·∂F/∂U > 0. For a pin this derivative is zero. It couples the radial motion back to the tangential "
-        "motion. Above the natural frequency it drives a circular motion, just as it destabilises the rotation on "
+        explanation="Friction along the slip grows with the slip speed of the ring's centre, at the rate "
+        "μN·∂F/∂U > 0. For a pin this rate is zero. It couples the radial motion back to the tangential motion. "
+        "Above the natural frequency it drives a circular motion, just as it destabilises the rotation on "
         "the axis.",
         evidence=_growth_beside_the_equilibrium,
     ),

@@ -71,7 +71,7 @@ def refined(
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, at least rounding error.
     If the numbers of a row (the last axis) are ``alike`` in unit and size, it is also at least the row's largest
     change, because a single number may hardly change by chance. If the engine does not follow the smaller tolerance,
-    the next larger one with an effect is used.
+    the next larger tolerance with an effect is used.
     """
     require_callable("quantity", quantity)
     tolerance = positive_number("tolerance", tolerance, "")
@@ -87,7 +87,7 @@ def refined(
 def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
     """Return ``errors`` with NaN replaced by infinity if the value is a number.
 
-    If the value is missing too, the error stays NaN, a failure.
+    If the value is missing too, the error stays NaN, which is a failure.
     """
     return np.where(np.isnan(errors) & np.isfinite(values), np.inf, errors)
 
@@ -102,7 +102,7 @@ def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
 def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True) -> FloatArray:
     """Return the error of ``found`` estimated from ``other``, see ``refined``; all of the same shape.
 
-    It is infinite if only one of them is a number.
+    The error is infinite if only one of the two is a number.
     """
     with np.errstate(invalid="ignore"):
         change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
@@ -141,8 +141,8 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
     """Return the order in h of ``errors`` at halved steps (shape (n,), n >= 4), its numerical and its model error.
 
     Orders observed between neighbours are a series in h, so 2·(last) − (second last) gains one power. The model error
-    is the last change of the observed orders, the numerical error that of the extrapolated ones, plus the effect of
-    ``noise``.
+    is the last change of the observed orders. The numerical error is the last change of the extrapolated orders, plus
+    the effect of ``noise``.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0
@@ -165,7 +165,7 @@ LONGEST = 4.0
 """Largest expected processor time in s of a shorter step."""
 
 MOST_SHORTER = 16.0
-"""Factor of the step beyond which no shorter one is tried if all have failed."""
+"""Factor of the step beyond which no shorter step is tried if all have failed."""
 
 Answer = TypeVar("Answer")
 

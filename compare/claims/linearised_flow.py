@@ -51,11 +51,11 @@ def measured_eigenvalues(
 
     Central differences of the engine's flow over ``duration`` (s), with |Im λ|·duration < π, give the linearised
     flow, whose eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
-    change with 2h and 4h, plus the estimate of ``refined``, plus the tolerance. The largest one counts for all
+    change with 2h and 4h, plus the estimate of ``refined``, plus the tolerance. The largest error counts for all
     eigenvalues.
 
     The motion must slide from ``state``, shape (4,) or (6,), and is steady in axes that turn with ``frame_speed``
-    (rad/s). A disc has a continuous ring and five eigenvalues, without that of its angle.
+    (rad/s). A disc has a continuous ring and five eigenvalues, without the eigenvalue of its angle.
     """
     state = np.asarray(state, dtype=float)
     moving, size = _deviations(system, state)

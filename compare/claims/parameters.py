@@ -36,13 +36,13 @@ FIG8 = DiscOnDisc(
 )
 """Parameters of Fig. 8, which varies the load; the load here is our choice.
 
-The paper omits X0; we use that of Figs. 4 to 6.
+The paper omits X0; we use the value of Figs. 4 to 6.
 """
 
 FIG9 = replace(FIG8, disc_speed=1.5, shaft_speed=1.25)
 """Parameters of Figs. 9 and 10, "for the same parameter values as above" except the two speeds; they vary the load.
 
-We assume β and b of Fig. 8. The paper omits X0 here too.
+We assume β and b of Fig. 8. The paper omits X0 here, too.
 """
 
 FIG11 = DiscOnDisc(

@@ -1,7 +1,7 @@
 """Texts of a study, from a Markdown file next to its module, such as ``fig04.md``, or from ``study.md``.
 
 The first heading is the title, followed by the statements of the paper. The sections "## Finding" and "## Figures"
-are optional; the latter contains the name of each figure as a heading, and its caption::
+are optional; "## Figures" contains the name of each figure as a heading, and its caption::
 
     # Branches under increasing friction force
 

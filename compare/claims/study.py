@@ -57,7 +57,7 @@ class Findings:
     gaps: dict[str, Failure | str] = field(default_factory=dict)
 
     def and_claim(self, sentence: str, found: Findings | Failure | str) -> Findings:
-        """Return these findings and those of another claim, or its gap."""
+        """Return these findings with the findings of another claim, or with its gap."""
         if not isinstance(found, Findings):
             return replace(self, gaps=self.gaps | {sentence: found})
         reasons = dict.fromkeys(f"{self.not_simulated}; {found.not_simulated}".strip("; ").split("; "))
@@ -76,8 +76,8 @@ class Declared:
     - ``each``: names and values of the members of a family; empty for a single claim.
     - ``duration``: total duration in s of a long claim's motions, weighted for finer steps, for the quick level.
 
-    All others are those of :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the
-    member's name.
+    All other fields are fields of :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for
+    the member's name.
     """
 
     function: Callable[..., Measured | None]

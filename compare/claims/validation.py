@@ -1,4 +1,4 @@
-"""Results that a run does not measure: recorded ones of engines, and validations.
+"""Results that a run does not measure: recorded results of engines, and validations.
 
 A validation compares a prediction of theory with a measured experiment. It is not a verdict, because a friction law
 describes a real contact only to some extent. A validation states how much of the difference the known uncertainties

@@ -142,7 +142,7 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
     ``studies`` replaces the studies of the paper in a project with its own studies and engines.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:  # the caller closed it, so the next open file would receive its number
+        if getattr(sys, name) is None:  # closed by the caller, so the next file would receive its number
             setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
             os.set_inheritable(getattr(sys, name).fileno(), True)
     for stream in (sys.stdout, sys.stderr):
@@ -156,7 +156,7 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
 
 
 def _interrupt_again(lost: Any) -> None:
-    """Repeat Ctrl-C if it came in a callback, such as of a weak reference, which loses exceptions."""
+    """Repeat Ctrl-C if it came in a callback, such as the callback of a weak reference, which loses exceptions."""
     if lost.exc_type is not KeyboardInterrupt:
         sys.__unraisablehook__(lost)
     elif threading.current_thread() is threading.main_thread():  # ``Threads`` repeats it for other threads

@@ -43,7 +43,7 @@ class Command(TyperCommand):
     """A command that rejects repeated and empty options."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse arguments; raise ``BadInputError`` for an empty option or a repeated one."""
+        """Parse arguments; raise ``BadInputError`` for an empty or repeated option."""
         values, _, given = self.make_parser(ctx).parse_args(args=list(args))
         for option in given:
             if option.param_type_name != "option" or option.is_flag or option.multiple:  # type: ignore[attr-defined]

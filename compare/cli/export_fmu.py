@@ -55,7 +55,7 @@ def export_pin(unit: Unit) -> None:
     The defaults are the second case of Fig. 5.
 
     \b
-    Parameters: those of `friction-discs simulate pin`, the initial state x, y (m), vx, vy (m/s), and
+    Parameters: as for `friction-discs simulate pin`, the initial state x, y (m), vx, vy (m/s), and
       exact=1 (0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
     \b
@@ -73,7 +73,7 @@ def export_disc(unit: Unit) -> None:
     The defaults are Fig. 11 with X0 = 0.
 
     \b
-    Parameters: those of `friction-discs simulate disc`, the initial state x, y (m), angle (rad), vx, vy (m/s),
+    Parameters: as for `friction-discs simulate disc`, the initial state x, y (m), angle (rad), vx, vy (m/s),
       spin (rad/s), and
       exact=1 (0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11

@@ -30,7 +30,7 @@ Group = TypeVar("Group", bound="DataclassInstance")
 Own = ParamSpec("Own")
 
 MOST_JOBS = 1000
-"""Limit of ``--jobs``; more could fill the process table."""
+"""Limit of ``--jobs``; more processes could fill the process table."""
 
 
 def whole(name: str, least: int, most: int) -> Callable[[str], int]:
@@ -128,8 +128,8 @@ def with_options(
 ) -> Callable[[Callable[Concatenate[Group, Own], Value]], Callable[..., Value]]:
     """Add the fields of the dataclass ``group`` to a command as options.
 
-    They replace the first argument, a ``group``, in the signature that typer reads. ``defaults`` override their
-    defaults.
+    The options replace the first argument, a ``group``, in the signature that typer reads. ``defaults`` override
+    their defaults.
     """
 
     def decorated(command: Callable[Concatenate[Group, Own], Value]) -> Callable[..., Value]:
@@ -155,7 +155,7 @@ def with_options(
 
 
 def changed(system: System, settings: Sequence[str]) -> System:
-    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid one."""
+    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid change."""
     given = changes_of(settings, [field.name for field in fields(system)])
     changes: dict[str, Any] = {
         name: None if name == "contact_points" and text.strip().lower() == "none" else _number(name, text)

@@ -347,7 +347,7 @@ def _failures(work: Mapping[str, object]) -> dict[str, Failure]:
 
 
 def _figures(result: Run) -> dict[str, object]:
-    """Return the drawings; one that fails costs no verdict."""
+    """Return the drawings; a drawing that fails does not affect verdicts."""
     return {f"{name}: the figures could not be drawn": drawing for name, drawing in result.drawings.items()}
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from reference_model.trajectory import Trajectory
 
 MOST_SAMPLES = 10_000_000
-"""Limit of ``--samples``; more would exhaust the memory."""
+"""Limit of ``--samples``; more samples would exhaust the memory."""
 
 PICTURES = (".png", ".pdf", ".svg")
 

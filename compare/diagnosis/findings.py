@@ -48,7 +48,7 @@ def heading(part: str) -> str:
 class Creep:
     """Creep in m/s of a block that friction should hold, at the finest rung.
 
-    Orders are those in the step, or in the tolerance if the step is not fixed; NaN if undefined.
+    Orders refer to the step, or to the tolerance if the step is not fixed; NaN if undefined.
     """
 
     speed: float  # under a load of μN/2
@@ -76,9 +76,9 @@ class History:
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces divided by the exact ones, and their errors; NaN where there is none.
+    """Forces divided by the exact forces, and their errors; NaN for a missing force.
 
-    They are those of ``probes.SUPPORTS`` or ``NONLINEAR``, shape (n,), force and moment on discs, shape (n, 2), or
+    They refer to ``probes.SUPPORTS`` or ``NONLINEAR``, shape (n,), to force and moment on discs, shape (n, 2), or
     friction far from the axis, shape (1,).
     """
 
@@ -324,7 +324,8 @@ def lag(engine: Engine) -> Lag:
 
 
 FINER, AFFORDABLE = 4.0, 5.0
-"""Ratio of steps for the repetition of a motion that does not converge, and its largest processor time in s."""
+"""Ratio of steps when a motion that does not converge is repeated, and largest processor time in s of the
+repetition."""
 
 
 def motion(engine: Engine, name: str) -> Motion:

@@ -70,7 +70,7 @@ def ramps() -> Iterator[Case]:
 
 
 def joints() -> Iterator[Case]:
-    """Yield a joint that stops, one that breaks away, and one that a moment turns back."""
+    """Yield a joint that stops, a joint that breaks away, and a joint that a moment turns back."""
     inertia, friction, spin = 0.5, 2.0, 2.0
     start, rest = (0.0, 0.0, spin, 0.0), (0.0, 0.0, 0.0, 0.0)
     # Friction slows the joint down at F/J from ω until it rests for good: φ = J·ω²/(2F).

@@ -44,7 +44,7 @@ BEGINS_AT = 1e-3  # largest error of the first state, relative to its size
 def asked(
     engine: Engine, motions: Sequence[tuple[AnySystem, tuple[float, ...], FloatArray]], tolerance: float
 ) -> list[FloatArray]:
-    """Return the states of each motion; raise ``BadTrajectoryError`` if one begins elsewhere."""
+    """Return the states of each motion; raise ``BadTrajectoryError`` if a motion begins elsewhere."""
     found = []
     for (_, start, _), run in zip(motions, engine.simulate_many(motions, tolerance=tolerance), strict=True):
         if not np.allclose(run.states[0], start, rtol=BEGINS_AT, atol=BEGINS_AT):
@@ -102,11 +102,11 @@ SUPPORTS = {
     "constant applied moment": (replace(SMOOTH, moment=((0.0, 1.0),)), (0.0, 1.0)),
     "changing applied moment": (replace(SMOOTH, moment=((0.0, 0.0), (0.08, 1.0), (0.1, 2.0))), (0.0, 1.0)),
 }
-"""Turning joints and their initial states, with one acting moment."""
+"""Turning joints and their initial states, each with one acting moment."""
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of speed due to each of ``SUPPORTS``, divided by the exact one, shape (n,)."""
+    """Return the change of speed due to each of ``SUPPORTS``, divided by the exact change, shape (n,)."""
     times = np.array([0.0, SETTLES_FOR, SETTLES_FOR + SLIDES_FOR])
     motions = [(joint, start, times) for joint, start in SUPPORTS.values()]
     found = []
@@ -146,7 +146,8 @@ def loaded(engine: Engine, loads: Sequence[float], ratio: float, tolerance: floa
 def breakaway(engine: Engine, ratio: float) -> tuple[float, float]:
     """Return the largest load/F that a joint holds from rest, to 1 %, and its friction/F afterwards.
 
-    The first is ``ratio`` if it is right. Both are NaN if the engine does not simulate joints with this static ratio.
+    The largest load/F is ``ratio`` if the engine is right. Both are NaN if the engine does not simulate joints with
+    this static ratio.
     """
     tolerance = float(tolerances(engine)[-1])
     load = OVERLOAD * ratio
@@ -202,10 +203,11 @@ SLOW = 1e-5
 
 
 def stops(engine: Engine, tolerance: float) -> FloatArray:
-    """Return angle in rad and time in s of a stop, each divided by the exact one; the lowest and the last speed.
+    """Return the angle and the time of a stop, divided by the exact values, and the lowest and the last speed.
 
-    The speeds are in units of the initial speed. The fifth number is the angle of rest on a spring in units of F/C,
-    and the last one the largest speed, divided by the initial one, of a joint that should stop within a step.
+    The speeds are in units of the initial speed. The fifth number is the angle of rest on a spring in units of F/C.
+    The last number belongs to a joint that should stop within a step: its largest speed, divided by its initial
+    speed.
     """
     near = np.linspace(0.9, 1.1, 41)
     turn = math.pi * math.sqrt(SPRUNG.inertia / SPRUNG.stiffness)

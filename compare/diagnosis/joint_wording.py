@@ -34,7 +34,7 @@ JOINT, INERTIA = "Not Coulomb friction in a joint", "Wrong inertia"
 KNOWN = 1e-2
 """Largest error, relative to the number, of a measurement that shows something."""
 
-COARSE = 0.1  # the same for a stop, whose error is that of many steps
+COARSE = 0.1  # the same for a stop, where the errors of many steps add up
 
 HELD = 0.011  # largest relative error of a breakaway moment that is right; bisection ends at 1 %
 STEADY = 0.02  # largest spread of equal shares, relative to their deviation
@@ -47,7 +47,7 @@ UNITS = ("kg m²", "N m", "rad/s", "rad", "rad/s")
 
 
 class _Number(NamedTuple):
-    """A value at the finest rung, its error, and whether it differs from the right one."""
+    """A value at the finest rung, its error, and whether it differs from the right value."""
 
     value: float
     error: float
@@ -72,7 +72,7 @@ def _number(values: FloatArray, right: float, noise: float = 0.0) -> _Number:
 def of_joint(joint: Joint, refined: str, ratio: float, noise: float) -> list[Remark]:
     """Return how the friction of a joint differs from Coulomb's, and whether it creeps.
 
-    ``ratio`` is that of the steps or tolerances of two rungs, and ``noise`` the relative error of the states.
+    ``ratio`` is the ratio of the steps or tolerances of two rungs, and ``noise`` the relative error of the states.
     """
     found = [*_of_supports(joint, noise)] or [*_of_slides(joint, refined, ratio)]
     creep = _creep(joint, ratio)
@@ -91,7 +91,7 @@ def of_joint(joint: Joint, refined: str, ratio: float, noise: float) -> list[Rem
 
 
 def right(joint: Joint, refined: str, noise: float) -> str:
-    """Return a sentence about a joint that shows no errors; ``refined`` and ``noise`` are those of ``of_joint``."""
+    """Return a sentence about a joint that shows no errors; for ``refined`` and ``noise`` see ``of_joint``."""
     error = max(*(_number(values, 1.0).error for values in joint.slides.T), *joint.noise)
     stop = 100.0 * max(_number(values, 1.0).error for values in joint.stops.T[:2])
     rests = abs(joint.creeps[-1, PULLS.index(0.5), 0]) <= _least(noise)
@@ -275,7 +275,7 @@ def _of_stops(joint: Joint, refined: str, ratio: float, noise: float) -> Iterato
 
 
 def _of_motions(joint: Joint) -> Iterator[Remark]:
-    """Yield whether whole motions converge to the exact ones."""
+    """Yield whether whole motions converge to the exact motions."""
     sizes = np.max(np.abs(joint.errors), axis=1)
     estimate = SAFETY * float(np.max(np.abs(np.diff(joint.errors[-3:], axis=0))))
     if sizes[-1] > max(estimate, NEGLIGIBLE) and sizes[-1] > 0.5 * sizes[0]:

@@ -93,7 +93,7 @@ class Push:
     def within(self, limits: Ranges) -> Push:
         """Return the slide about its place, with lengths, speeds and load so small that it stays within limits.
 
-        The limits are those of the engine and ``REACH``.
+        The engine's limits and ``REACH`` apply.
         """
         half = 0.5 * (SETTLES_FOR + self.lasts) * self.velocity
         reach = min(REACH, limits.coordinate) / (abs(self.place) + abs(half))
@@ -265,7 +265,7 @@ RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
 def second_release(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the distance after the second release, divided by the exact one, and the delay."""
+    """Return the distance after the second release, divided by the exact distance, and the delay."""
     stretch = FRICTION / SWING.stiffness
     turned, quarter = math.pi / RATE, 0.5 * math.pi / RATE
     start = ((SECOND_PULL + 2.0) * stretch, 0.0, 0.0, 0.0)
@@ -276,7 +276,7 @@ def second_release(engine: Engine, tolerance: float) -> FloatArray:
 
 
 def at_rest(engine: Engine, tolerance: float) -> float:
-    """Return the largest creep speed in m/s of a block close to release and of one at rest after a slide."""
+    """Return the largest creep speeds in m/s of blocks close to release and at rest after a slide."""
     ((nearly, *_),) = pulled(engine, (NEARLY,), tolerance)
     run = engine.simulate(pulled_block(0.5), (0.0, 0.0, 0.0, 0.2), (0.0, 5.0, 6.0), tolerance=tolerance)
     return float(max(abs(nearly), np.hypot(*(run.states[2, :2] - run.states[1, :2]))))
@@ -293,7 +293,8 @@ TURNS_FOR = 1.0
 def lag(engine: Engine, tolerance: float) -> float:
     """Return the delay in s of the friction direction behind the slip; 0 for Coulomb friction.
 
-    It is the missing momentum over the momentum that a shift in time changes, along the latter.
+    The delay is the missing momentum over the momentum that a shift in time changes, along the direction of this
+    change.
     """
     times = SETTLES_FOR + np.linspace(0.0, TURNS_FOR, PANELS + 1)
     run = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), np.concatenate(([0.0], times)), tolerance=tolerance)
@@ -354,7 +355,7 @@ def supports(engine: Engine, parts: Mapping[str, Any], tolerance: float) -> Floa
 def _settled(
     engine: Engine, motions: Sequence[Any], tolerance: float, exactly: float
 ) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
-    """Yield the states after ``SETTLES_FOR`` and at the end, and the exact end from the former."""
+    """Yield the states after ``SETTLES_FOR`` and at the end, and the exact end from the first state."""
     runs = engine.simulate_many(motions, tolerance=tolerance)
     for (system, _, times), run in zip(motions, runs, strict=True):
         begun, ended = run.states[1:]
@@ -368,7 +369,7 @@ def _share(found: FloatArray, exact: FloatArray, start: FloatArray) -> float:
 
 
 def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], FloatArray]]:
-    """Return small and large discs that slide, spin and do both."""
+    """Return small and large discs that slide, spin, and slide and spin."""
     found: list[tuple[DiscOnDisc, tuple[float, ...], FloatArray]] = []
     for mass, radius in ((1.0, 0.1), (30.0, 2.0)):
         for slip, spin in ((1.0, 0.0), (0.0, 1.0), (0.6, 0.8)):
@@ -391,7 +392,7 @@ def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], Float
 
 
 def moments(engine: Engine, points: int | None, tolerance: float) -> FloatArray:
-    """Return the ratios of force and moment of friction to the exact ones, shape (6, 2); NaN for none."""
+    """Return force and moment of friction divided by the exact values, shape (6, 2); NaN for missing values."""
     motions, found = discs(points), []
     settled = _settled(engine, motions, tolerance, 1e-12)
     for (_, start, _), (begun, ended, exact) in zip(motions, settled, strict=True):

@@ -317,7 +317,7 @@ def write_rows(rows: Sequence[Row], folder: Path) -> None:
 
 
 def write_pictures(rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write available figures as svg and png; return the paths of the latter."""
+    """Write available figures as svg and png; return the paths of the png files."""
     figures: dict[str, Figure] = {}
     wrong = [row for row in rows if row.scales is not None and row.verdict != RIGHT]
     with paper_style():

@@ -56,7 +56,7 @@ def diagnosed(
 def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
     """Yield each engine with a sentence about two blocks, or two joints, one that moves and one that should rest.
 
-    The sentence is "" for an engine that simulates neither. For an engine without a result it is replaced by its row.
+    The sentence is "" for an engine that simulates neither. If an engine has no result, its row appears instead.
     """
     for engine in engines:
         of_joints = engine.simulates(JOINT) and not engine.simulates(SLIDE)
@@ -101,7 +101,7 @@ def _probed(engine: Engine, workers: Workers) -> Row:
 
 
 def measured(engine: Engine, part: str) -> Any:
-    """Return one part of an engine's diagnosis, why the engine refuses it, or None if it declares so."""
+    """Return one part of an engine's diagnosis, why the engine refuses it, or None if its declaration excludes it."""
     return _or_reason(parts_of(engine)[part], engine)
 
 

@@ -59,7 +59,7 @@ class Scales:
 
     @property
     def looked_at(self) -> str:
-        """Ranges in words of the variables on slides that keep their speed and whose force is ``KNOWN``."""
+        """The examined ranges: slides at constant speed whose force is known to ``KNOWN``."""
         return self.ranges(self.keep & (self.errors <= KNOWN))
 
     def ranges(self, chosen: NDArray[np.bool_]) -> str:
@@ -297,7 +297,7 @@ def _alike(sizes: FloatArray) -> str:
 
 
 def _everywhere(sizes: FloatArray) -> str:
-    """Describe deviations of all slides but those of one condition."""
+    """Describe deviations of all slides except under one condition."""
     if not (alike := _alike(sizes)):
         return ""
     return f"{alike} except for {SLIDE.mass:g} kg, {SLIDE.friction_force:g} N and {SLIDE_SPEED:g} m/s"

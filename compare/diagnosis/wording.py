@@ -25,7 +25,7 @@ IMPRECISE = 1e-5  # error over resolution that limited precision explains
 LEAST_SHARE = 1e-6  # smallest reported relative deviation of other results
 
 ALIKE = 0.1
-"""Largest spread of forces that a wrong mass explains, and relative size of deviations that others explain."""
+"""Largest spread of forces that a wrong mass explains, and relative size of deviations that other causes explain."""
 
 VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
@@ -260,7 +260,7 @@ def of_nonlinear(forces: Shares) -> Iterator[Remark]:
 
 
 def of_far(far: Shares) -> Iterator[Remark]:
-    """Yield that friction is wrong far from the axis; without any, the engine's plate may end before."""
+    """Yield that friction is wrong far from the axis; if there is none, the engine's plate may end before."""
     (share,), (error,) = far.shares.tolist(), far.errors.tolist()
     missing = abs(share) <= max(MISSING, error)
     if abs(share - 1.0) > max(ALIKE, DISTINCT * error):

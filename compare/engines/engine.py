@@ -174,7 +174,7 @@ class Engine:
         """Return the motion of each system from its initial state at its times.
 
         If ``function`` has an attribute ``simulate_many``, one call with lists of systems, initial states and times
-        computes all motions. Errors are those of ``simulate``.
+        computes all motions. Raises the errors of ``simulate``.
         """
         motions = list(motions)
         at_once = getattr(self._asked, "simulate_many", None)
@@ -195,12 +195,12 @@ class Engine:
 
     @property
     def noise(self) -> float:
-        """The declared precision, or that of single precision if the engine has returned such numbers."""
+        """The declared precision, or single precision if the engine has returned such numbers."""
         return self.precision or self._seen_noise
 
     @property
     def is_smooth(self) -> bool:
-        """True if errors depend smoothly on the tolerance, unlike those of a fixed step or a limited precision.
+        """True if errors depend smoothly on the tolerance: no fixed step and no limited precision.
 
         Otherwise differences within the resolution of a claim are negligible.
         """

@@ -16,7 +16,7 @@ from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Trajectory
 
 LEAST_PRECISE = 1e-3  # largest precision that an engine may declare
-OTHER_SIZE = 0.25  # noise at every second tolerance, relative to that at the others
+OTHER_SIZE = 0.25  # noise at every second tolerance, relative to the noise at the others
 
 
 SINGLE = 1e-6
@@ -38,7 +38,7 @@ def are_single(states: FloatArray) -> bool:
 def blurred_start(system: AnySystem, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
     """Return ``state``, of any shape, with its position or angle moved by noise of size ``precision``.
 
-    The velocity changes by that of the master disc, so a sticking body still sticks.
+    The velocity of the master disc is added, so a sticking body still sticks.
     """
     half = len(state) // 2
     moved = _blurred(state[np.newaxis], precision, tolerance, state)[0]
@@ -62,7 +62,7 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
     """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
     Opposite signs at the two tolerances of an estimate reveal odd effects of the noise, different amplitudes even
-    ones. Independent noise could be equal by chance.
+    effects. Independent noise could be equal by chance.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision

@@ -15,7 +15,7 @@ from reference_model.systems import FloatArray, System, finite_number
 from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import SimulationError
 
-ROUNDING = 1e-9  # relative excess over a limit that is one of rounding
+ROUNDING = 1e-9  # relative excess over a limit that is only rounding
 ROUGH = 1e-6  # tolerance of the reference for the extent of a motion
 
 
@@ -83,7 +83,7 @@ class Ranges:
 
 
 EVERYWHERE = Ranges()
-"""The ranges of an engine that declares none."""
+"""The ranges of an engine without declared ranges."""
 
 
 @functools.lru_cache(maxsize=512)  # each motion is requested at several tolerances

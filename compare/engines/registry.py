@@ -1,4 +1,4 @@
-"""Engines by name: those of this project, of installed packages, and functions of modules."""
+"""Engines by name: engines of this project and of installed packages, and functions of modules."""
 
 import importlib
 import os
@@ -59,7 +59,7 @@ _ON_REQUEST: set[str] = set()
 class Scheme(NamedTuple):
     """Meaning of names "scheme:REST": a function that returns the engine of REST, and a quick check of REST.
 
-    Both raise ``ValueError`` if REST is invalid. If ``alone``, REST may be missing and is then "".
+    Both functions raise ``ValueError`` if REST is invalid. If ``alone``, REST may be missing and is then "".
     """
 
     engine: Callable[[str], Engine]
@@ -91,7 +91,7 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 
 
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
-    """Return the engines of the given names, or by default all registered engines except those on request.
+    """Return the engines of the given names, or by default all registered engines except those that must be named.
 
     A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Raises ``ValueError``
     if a name is unknown or cannot be imported.
@@ -116,7 +116,7 @@ def owner_of(engine: Engine | None) -> str:
 
 
 def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
-    """Return the engines, renamed to the requested names where their own are ambiguous."""
+    """Return the engines, with the requested names where their own names are ambiguous."""
     taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])
     return tuple(
         replace(engine, name=name) if engine.name != name and taken[engine.name] > 1 else engine
@@ -171,7 +171,7 @@ def packaged() -> dict[str, str]:
 
 
 def imported(name: str, place: str) -> Engine:
-    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` without one.
+    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if it is missing.
 
     By default it simulates the pin only, without reporting phases. The attributes ``DECLARED`` of the function
     override parameters of ``Engine``.

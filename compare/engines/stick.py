@@ -38,7 +38,7 @@ LOOKS = 3
 LEAST = 1e-7
 """Least slip for extrapolation, as a share of the largest speed, at a tolerance of 1e-9.
 
-It is proportional to the root of the tolerance, so error estimates include the extrapolation.
+This limit is proportional to the root of the tolerance, so error estimates include the extrapolation.
 """
 
 ABOVE_NOISE = 32.0  # least slip for extrapolation, in units of the precision, if that exceeds ``LEAST``
@@ -46,7 +46,8 @@ NOISE = 0.1  # relative change of slip between samples that indicates rounding n
 ABOVE_CREEP = 8.0  # least slip for extrapolation, in units of the creep in stick
 
 QUIET, QUIETER = 0.1, 0.5
-"""Share of a slow span that is certainly stick: at first, when it may contain slow slip, and later."""
+"""Share of a slow span that is certainly stick, for the first span, which may contain slow slip, and for later
+spans."""
 
 GROWS = 1.2
 """Ratio of the third to the first quartile of creep that grows up to release."""
@@ -61,7 +62,7 @@ class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
     ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance
-    divided by 1e-9, ``precision`` and ``step`` (s) are those of the engine.
+    divided by 1e-9, ``precision`` and ``step`` (s) belong to the engine.
     """
 
     def __init__(

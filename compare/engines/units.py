@@ -1,4 +1,4 @@
-"""Motions in other units: the requested ones in dimensionless form, with other parameters.
+"""Motions in other units: the requested motions in dimensionless form, with other parameters.
 
 The studies' masses are mostly 1 kg and speeds below 2 m/s; an engine may be wrong at all others. The units are
 powers of two, so an engine without absolute constants returns the same digits.
@@ -93,7 +93,7 @@ class InOtherUnits:
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
-        """The same for ``function.simulate_many``; None if it has none, or takes one step for all motions."""
+        """Wrapped ``function.simulate_many``; None if it is missing, or takes one step for all motions."""
         at_once = getattr(self.function, "simulate_many", None)
         return at_once and functools.partial(self._many, at_once)
 
@@ -140,7 +140,7 @@ def _step(accuracy: dict[str, float], units: tuple[int, int, int]) -> dict[str, 
 
 
 def _back(answer: Any, system: AnySystem, units: tuple[int, int, int]) -> Any:
-    """Return the answer in the units of ``system``; an invalid one is unchanged."""
+    """Return the answer in the units of ``system``; an invalid answer is unchanged."""
     factors, second = _factors(system, units), 2.0 ** units[2]
     if not isinstance(answer, Trajectory) or np.shape(answer.states)[1:] != factors.shape:
         return answer

@@ -38,7 +38,7 @@ class Case:
 
     @property
     def negligible(self) -> float:
-        """Error in m that does not show another law: 1 % of the effect of another law."""
+        """Negligible error in m: 1 % of the effect of another law."""
         return 0.1 * self.resolution
 
     @property
@@ -196,7 +196,7 @@ class Recording:
 
 
 def recordings() -> tuple[Recording, ...]:
-    """Return all recordings: the reference, then our other engines, then foreign ones.
+    """Return all recordings: the reference, then our other engines, then foreign engines.
 
     Raises ``ValueError`` if the columns of a file differ from ``COLUMNS``.
     """
@@ -214,7 +214,7 @@ def recordings() -> tuple[Recording, ...]:
 
 
 ORDERS = np.linspace(0.4, 8.0, 153)
-"""Orders of convergence among which the fit chooses. At the smallest one, the changes do not fall."""
+"""Orders of convergence among which the fit chooses. At the smallest step, the changes do not fall."""
 
 SAFETY = 2.0
 """Ratio of the estimate to the extrapolated error; the recordings of first order need 1.4."""
@@ -224,7 +224,7 @@ def estimate(runs: FloatArray) -> float:
     """Return the error estimate in m of the finest of ``runs``, by Richardson's extrapolation; 0 of a single run.
 
     For an error C·h^p with the recorded step h = 1/``STEPS``, the order p fits the last three changes, and C the last
-    two. If the changes do not fall, the estimate is ``SAFETY`` times the last one.
+    two. If the changes do not fall, the estimate is ``SAFETY`` times the last change.
     """
     last = runs[-4:]
     known = np.isfinite(last[1:, CHANGE])

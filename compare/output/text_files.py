@@ -31,8 +31,8 @@ LARGEST = 1 << 28
 def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     """Yield a stream for the new contents of a file; an exception inside leaves the old contents.
 
-    An ``OSError`` gets the file's name if it has none. Several processes may replace one file at a time: the last one
-    wins. Pipes and devices are written directly.
+    An ``OSError`` gets the file's name if it has none. Several processes may replace one file at a time: the last
+    process wins. Pipes and devices are written directly.
     """
     path = _target(path)
     text: dict[str, Any] = {} if "b" in mode else {"encoding": "utf-8", "newline": "\n"}
@@ -76,7 +76,7 @@ def check_writable(path: Path) -> None:
 
 
 def read_file(path: Path, most: int = LARGEST) -> bytes:
-    """Return the contents of a regular file; raise ``OSError`` for another one, or for more than ``most`` bytes."""
+    """Return the contents of a regular file of up to ``most`` bytes; raise ``OSError`` for any other file."""
 
     def opened(name: str, flags: int) -> int:  # opening a pipe would wait for a writer
         return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))

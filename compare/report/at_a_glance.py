@@ -35,7 +35,7 @@ class Glance:
 
 
 def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
-    """Return the engines that this run measured, then the recorded ones at their best settings."""
+    """Return the engines that this run measured, then the recorded engines at their best settings."""
     recorded = matrix.recorded[0] if matrix.recorded else None
     known = {*matrix.columns, *(recorded.by_engine if recorded is not None else ())}
     found = [_measured(run, matrix, engine, recorded) for engine in run.engines if engine in known]
@@ -111,7 +111,7 @@ GAPS = {
 
 
 def best_of(settings: Sequence[Recorded]) -> Recorded:
-    """Return the setting with the fewest claims that do not agree; of several, the one with the most that do."""
+    """Return the setting with the fewest claims that do not agree; among several, with the most agreements."""
 
     def badness(setting: Recorded) -> tuple[int, int, float]:
         agree = sum(claim.verdict is Verdict.AGREES for claim in setting.claims)

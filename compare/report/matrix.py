@@ -58,15 +58,15 @@ WORST_FIRST = (
     State.NOT_SIMULATED,
     State.AGREES,
 )
-"""States by priority: a cell takes the first one of its claims."""
+"""States by priority: a cell takes the first state among its claims."""
 
 
 @dataclass(frozen=True)
 class Cell:
     """One engine's answer to one claim: the worst state of usually one claim.
 
-    ``reason`` is that of a missing verdict, ``evidence`` the kind of evidence, "" without a verdict. ``implied_by``
-    is the claim, or the engine with the same claim, whose verdict implies this one.
+    ``reason`` says why a verdict is missing; ``evidence`` is the kind of evidence, "" without a verdict.
+    ``implied_by`` is the claim, or the engine with the same claim, whose verdict implies the present verdict.
     """
 
     state: State
@@ -244,7 +244,7 @@ class Matrix:
 
     @property
     def agrees(self) -> bool:
-        """True if at least one cell agrees and all simulated ones do."""
+        """True if at least one cell agrees and all simulated cells do."""
         return self.totals[State.AGREES] > 0 and not self.worst
 
 
@@ -311,7 +311,7 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
 
 
 def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
-    """Return a cell with its kind of evidence; another of ``rows`` may imply its verdict."""
+    """Return a cell with its kind of evidence; another row of ``rows`` may imply its verdict."""
     cell = row.cells[column]
     if not cell.claims:
         return cell

@@ -99,7 +99,7 @@ class Element:
 
 
 def worst(claim: Claim) -> Element:
-    """Return the element nearest to failing; for an inconclusive claim, the one with the largest error bar."""
+    """Return the element nearest to failing; for an inconclusive claim, the element with the largest error bar."""
     difference = np.nan_to_num(claim.difference.ravel(), nan=np.inf)
     units = np.resize(claim.units, difference.size)
     largest = (
@@ -130,7 +130,7 @@ def _numerical(claim: Claim) -> FloatArray:
 
 
 def deciding(claims: Sequence[Claim]) -> Claim:
-    """Return the claim nearest to failing, or the least certain one, of claims with the same verdict."""
+    """Return the claim nearest to failing, or the least certain claim, among claims with the same verdict."""
 
     def weight(claim: Claim) -> float:
         element = worst(claim)
@@ -144,7 +144,7 @@ def deciding(claims: Sequence[Claim]) -> Claim:
 def in_short(claim: Claim) -> str:
     """Return the number next to a verdict: the error bar, "± 2×10⁻⁹ m", or the excessive difference, "by 3 m".
 
-    For yes-no answers it is "7 of 8".
+    For yes-no answers the text is "7 of 8".
     """
     element = worst(claim)
     if claim.answers:

@@ -14,5 +14,5 @@ QUICK_SEED = 1
 
 
 def seed_of(level: str, seed: int | None) -> int | None:
-    """Return the given ``seed`` of the units of motions, or that of the level "quick" or "full"."""
+    """Return the given ``seed`` of the units of motions, or the default of the level "quick" or "full"."""
     return QUICK_SEED if level == "quick" and seed is None else seed

@@ -39,7 +39,7 @@ class Course:
     ready: bool = False
 
     def claim(self, part: str) -> Generator[Work, Done, Findings | Failure | str]:
-        """Yield work and receive its results; return those of one claim, or why there are none."""
+        """Yield work and receive its results; return the results of one claim, or why there are none."""
         name = self.engine if isinstance(self.engine, str) else self.engine.name
         longer = f"the study {self.study.name} takes longer than {self.limit:g} s with {name}; "
         longer += "use --level full" if self.quick else "use a larger --study-limit"

@@ -23,7 +23,7 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 OFF_BY = 1e-4
-"""Error of the wrong answers relative to each component's size, larger than those of engines."""
+"""Error of the wrong answers relative to each component's size, larger than the errors of engines."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,8 @@ class Planned:
 class _Recorder:
     """The ``simulate`` of an engine that records its questions; its answers are exact, or wrong by ``OFF_BY``.
 
-    No two instances are equal, so a study never reuses results of another one. ``known`` contains the exact motions.
+    No two instances are equal, so a study never reuses results of another engine. ``known`` contains the exact
+    motions.
     """
 
     known: dict[bytes, Trajectory]

@@ -18,7 +18,7 @@ from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
 
 Progress = Callable[[int, int, str, float], None]
-"""Takes the numbers of finished and of all pieces of work, the names of the running ones and the time left in s."""
+"""Takes the numbers of finished and of all pieces of work, the names of the running pieces and the time left in s."""
 
 
 @dataclass
@@ -47,7 +47,7 @@ class Run:
     interrupted: bool = False
 
     def columns(self, study: Study) -> tuple[str, ...]:
-        """Return the columns of ``study``: "theory" if it has one, and the engines that take part."""
+        """Return the columns of ``study``: "theory" if some claims need no engine, and the engines that take part."""
         theory = (THEORY,) if study.has_theory else ()
         return theory + tuple(name for name in self.engines if self._takes_part(name, study))
 

@@ -120,8 +120,8 @@ class Drawing:
 def drawn(study: Study, data: Mapping[str, Data], partial: Sequence[str] = ()) -> Drawing:
     """Return the figures and animations of a study as bytes.
 
-    The engines in ``partial`` lack claims. One is left out if a figure needs the data of these claims. If the others
-    lack data too, each engine is tried.
+    The engines in ``partial`` lack claims. An engine is left out if a figure needs the data of these claims. If the
+    others lack data too, each engine is tried.
     """
     shown = {name: arrays for name, arrays in data.items() if name not in partial}
     try:

@@ -1,4 +1,4 @@
-"""Reusable worker processes; a crash of one does not affect the others.
+"""Reusable worker processes; a crash of one process does not affect the others.
 
 ``concurrent.futures`` gives up its whole pool when one process dies, and compiled engines may crash.
 """
@@ -105,9 +105,9 @@ class Workers:
         owner: str = "",
         limit: float | None = None,
     ) -> None:
-        """Append ``function(*arguments)`` to the queue, or prepend it if ``first``; ``limit`` replaces the usual one.
+        """Queue ``function(*arguments)``, at the front if ``first``; ``limit`` replaces the usual limit.
 
-        A process that has worked for an ``owner`` never works for another one, because a foreign engine may have
+        A process that has worked for an ``owner`` never works for another owner, because a foreign engine may have
         changed its modules.
         """
         work = _Work(key, function, arguments, owner, self.limit if limit is None else limit)
@@ -235,7 +235,7 @@ class _Worker:
     def end(self) -> None:
         self.dead = True
         if self._process.pid is not None and hasattr(os, "killpg"):
-            with suppress(ProcessLookupError, PermissionError):  # it leads no group yet, or no longer
+            with suppress(ProcessLookupError, PermissionError):  # it does not lead a group yet, or has ended
                 os.killpg(self._process.pid, signal.SIGKILL)  # includes processes of an engine
         self._process.kill()  # compiled code may ignore weaker signals
         self._process.join()

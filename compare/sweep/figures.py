@@ -234,7 +234,7 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
 
 
 def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -> Figure:
-    """Draw the shares and radii of the motions, with those of the theory."""
+    """Draw the shares and radii of the motions, measured and predicted."""
     figure, (left, right) = new_figure(ncols=2, width=12.5, height=4.8)
     values = plan.x.values
     for j, end in enumerate(result["motion_end"].values):

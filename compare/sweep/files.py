@@ -84,7 +84,7 @@ class Files:
                 return None
 
     def write(self, contents: Mapping[str, bytes]) -> None:
-        """Write files, in a folder atomically; replace existing ones."""
+        """Write files, in a folder atomically; replace existing files."""
         system, root = self._system
         with store_errors(self.url):
             if self.options is not None:

@@ -32,7 +32,7 @@ class Grid:
         self.ends.flat[numbers], self.simulated.flat[numbers] = np.asarray(ends), True
 
     def lines(self, stride: int) -> Lines:
-        """Return every ``stride``-th line of the grid, and the last one."""
+        """Return every ``stride``-th line of the grid, and the last line."""
         y, x = (np.union1d(np.arange(0, points, stride), points - 1) for points in self.ends.shape)
         return y, x
 
@@ -68,8 +68,7 @@ class Grid:
 def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Grid]:
     """Yield the points to simulate in each round, numbered y·(points of x) + x; receive their ends.
 
-    The finest grid has the ``shape`` (y, x), the first at least ``coarse`` points along each axis. Returns the finest
-    grid.
+    The first grid has at least ``coarse`` points along each axis. Returns the finest grid, of ``shape`` (y, x).
     """
     grid = Grid(shape)
     stride = first_stride(shape, coarse)

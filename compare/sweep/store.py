@@ -114,7 +114,7 @@ class SweepStore:
             whole = whole and chunk >= 1
         except (StoreError, MemoryError):
             raise
-        except Exception:  # a description of a stranger may raise anything
+        except Exception:  # the description of an unknown store may raise anything
             whole = False
         if not whole:
             raise ValueError(
@@ -152,7 +152,7 @@ class SweepStore:
         return Round(group, numbers, self.chunk)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
-        """Return round ``i`` of the trajectories ``numbers``, or None without an intact one."""
+        """Return round ``i`` of the trajectories ``numbers``, or None without an intact round."""
         group = self._group(ROUND.format(i))
         if not self._is_intact(group, f"the description of {group.name}"):
             return None
@@ -167,11 +167,11 @@ class SweepStore:
             self.broken.append(f"{ROUND.format(i)}: {word} {shown}{more} (of {count})")
 
     def put(self, name: str, dataset: xr.Dataset) -> None:
-        """Write a group and replace an older one."""
+        """Write a group and replace an older group."""
         self.end(self.begin(name, {}), dataset)
 
     def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
-        """Replace a group by one that workers write; :meth:`end` completes it."""
+        """Replace a group by a group that workers write; :meth:`end` completes it."""
         self.files.remove(name)
         group = self._group(name)
         with store_errors(self.files.url):
@@ -191,7 +191,7 @@ class SweepStore:
         return group.dataset() if self._is_intact(group, name) else None
 
     def finished(self, name: str) -> xr.Dataset:
-        """Return an intact group; raise ``ValueError`` without one."""
+        """Return an intact group; raise ``ValueError`` if the group is missing or damaged."""
         group = self.get(name)
         if group is None:
             raise ValueError(
@@ -232,7 +232,7 @@ def archive_of(place: str) -> Path | None:
 
 
 def is_free(files: Files) -> bool:
-    """Return whether no store exists there."""
+    """Return whether no store exists at the place of ``files``."""
     archive = archive_of(files.url)
     return not files.inside() and (archive is None or not archive.exists())
 

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
+import notebooks as gallery
 import pages as pages_of_program
 
 from compare.report.numbers import unbroken
@@ -46,7 +47,7 @@ SECTIONS = {
         "api/fmu-models",
         "api/compare",
     ),
-    "Development": ("architecture", "contributing", "changelog"),
+    "Development": ("architecture", "modules", "benchmarks", "contributing", "changelog"),
 }
 """Pages by section, in the order of the navigation."""
 
@@ -82,7 +83,12 @@ def gather(folder: Path) -> None:
     found["index.md"] += _navigation()
     found["latest-report.md"] = pages_of_program.report(found["latest-report.md"])
     found["cite.md"] = pages_of_program.citation(found["cite.md"])
+    notebooks = gallery.notebooks()
+    found |= {f"notebooks/{name}.py": text for name, text in notebooks.items()}
+    found["gallery.md"] = gallery.linked(found["gallery.md"], list(notebooks))
     found["commands.md"] = pages_of_program.commands()
+    found["modules.md"] = pages_of_program.modules()
+    found["benchmarks.md"] = pages_of_program.benchmarks()
     found["api/tasks.rst"] = pages_of_program.tasks()
     for uri in ("equations.md", "findings.md", "cite.md"):
         found[uri] = pages_of_program.linked_claims(found[uri])
@@ -177,12 +183,17 @@ def main(folder: Path) -> int:
     """Build the site into ``folder`` and return the exit status."""
     from sphinx.cmd.build import build_main
 
-    shutil.rmtree(folder, ignore_errors=True)
     with tempfile.TemporaryDirectory() as place:
-        gather(Path(place))
-        shutil.copy(Path(__file__).with_name("conf.py"), place)
+        pages, built = Path(place, "pages"), Path(place, "site")
+        gather(pages)
+        shutil.copy(Path(__file__).with_name("conf.py"), pages)
         footer = f"copyright=2026, the friction-discs maintainers. {pages_of_program.footer()}"
-        status = build_main(["-W", "--keep-going", "-q", "-b", "html", "-D", footer, place, str(folder)])
+        options = ["-W", "--keep-going", "-q", "-b", "html", "-D", footer, str(pages), str(built)]
+        status = build_main(options)
+        executed = Path(place, "jupyter_execute", "notebooks")  # next to the site, by myst-nb
+        shutil.copytree(executed, built / "notebooks", dirs_exist_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(built, folder)
     if not status and (REPORT / "index.html").exists():
         shutil.copytree(REPORT, folder / "report", dirs_exist_ok=True)
     if not status and pages_of_program.PAPER.exists():

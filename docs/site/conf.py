@@ -11,7 +11,7 @@ copyright = f"2026, {author}"
 release = version = __version__
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
@@ -20,6 +20,13 @@ extensions = [
 html_theme = "furo"
 html_title = f"friction-discs {release}"
 html_theme_options = {"navigation_with_keys": True}
+
+nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 600
+nb_output_stderr = "remove"
+exclude_patterns = ["conf.py"]
 
 highlight_language = "text"
 

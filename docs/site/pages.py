@@ -1,7 +1,8 @@
-"""Pages of the site that are made from the program: commands, tasks of the API, citation and the latest report."""
+"""Pages of the site that are made from the program: its modules, commands and benchmarks, citation, latest report."""
 
 from __future__ import annotations
 
+import ast
 import html
 import importlib
 import inspect
@@ -14,6 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 REPORT = ROOT / "report"
+BENCHMARKS = ROOT / "benchmarks"
+PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 PAPER = ROOT / "docs" / "paper" / "paper.pdf"
 
 TASKS = {
@@ -96,9 +99,37 @@ def tasks() -> str:
             package, _, attribute = name.rpartition(".")
             thing = getattr(importlib.import_module(package), attribute)
             text = inspect.getdoc(thing) if callable(thing) else "Parameters or variables, ready to use."
-            sentence = re.split(r"(?<=\.)\s|\n\n", text or "")[0].replace("\n", " ").replace("|", r"\|")
-            lines += [f"   * - :py:obj:`{attribute} <{name}>`", f"     - {sentence}"]
+            lines += [f"   * - :py:obj:`{attribute} <{name}>`", f"     - {_sentence(text or '')}"]
     return "\n".join(lines) + "\n"
+
+
+def modules() -> str:
+    """Return the map of the code: each module of the packages with the first sentence of its docstring."""
+    lines = ["# Modules", "", "This page lists all modules with the first sentence of their docstrings."]
+    for package in PACKAGES:
+        lines += ["", f"## {package}", "", "| module | contents |", "|---|---|"]
+        for path in sorted((ROOT / package).rglob("*.py")):
+            name = path.relative_to(ROOT / package).as_posix().removesuffix("/__init__.py")
+            lines.append(f"| `{name}` | {_sentence(_docstring(path))} |")
+    return "\n".join(lines) + "\n"
+
+
+def benchmarks() -> str:
+    """Return the page of the benchmarks, with the figures that their docstrings contain."""
+    lines = ["# Benchmarks", "", _docstring(BENCHMARKS / "tracked" / "__init__.py")]
+    programs = (path for path in sorted(BENCHMARKS.glob("*.py")) if "__main__" in path.read_text("utf-8"))
+    for path in programs:
+        lines += ["", f"## {path.stem}", "", _docstring(path)]
+    return "\n".join(lines) + "\n"
+
+
+def _docstring(path: Path) -> str:
+    return ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+
+
+def _sentence(text: str) -> str:
+    """Return the first sentence of a docstring on one line."""
+    return re.split(r"(?<=\.)\s|\n\n", text)[0].replace("\n", " ").replace("|", r"\|")
 
 
 def commands() -> str:

@@ -64,7 +64,7 @@ class DrivetrainMotion:
 class DrivetrainModel:
     """A drivetrain in Exudyn, assembled.
 
-    ``container`` owns ``mbs`` and must live as long. ``engine``, ``disc`` and ``vehicle`` are nodes, whose
+    ``container`` owns ``mbs`` and must live as long as ``mbs``. ``engine``, ``disc`` and ``vehicle`` are nodes, whose
     coordinates and velocities the ``sensors`` record. ``friction.change(normal_load=...)`` engages the clutch.
     ``support`` holds the disc on its shaft. ``balance`` returns the energy balance after a run.
     """
@@ -140,7 +140,7 @@ def build_drivetrain(
 ) -> DrivetrainModel:
     """Build a drivetrain whose disc initially turns with the gearbox about the shaft's axis.
 
-    ``normal_load`` is that of ``add_ring_friction``; all facings carry it. ``regularisation`` is ε > 0 in m/s.
+    ``normal_load`` is the load of ``add_ring_friction``, which all facings carry. ``regularisation`` is ε > 0 in m/s.
     Initial speeds are in rad/s, and ``shaft_torque``, in N m, is the initial torque of the torsional spring. Raises
     ``ValueError`` if a number is out of range.
     """

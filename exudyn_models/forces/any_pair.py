@@ -143,9 +143,9 @@ def derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return derivatives on the nodes of friction given as a function of the slip, and the forces on the nodes.
 
-    The derivatives are weighted sums of those in coordinates and in velocities: of the forces, shape (n, n), and of
-    radius (m), P (m/s) and S (rad/s), shape (3, n). ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape
-    (3, 4), in slip and angle; the gradient of P is ``slope`` times the force.
+    The derivatives by coordinates and by velocities are added with weights: the derivatives of the forces, shape (n,
+    n), and of radius (m), P (m/s) and S (rad/s), shape (3, n). ``force`` (F_x, F_y, M) has the derivatives
+    ``by_slip``, shape (3, 4), in slip and angle; the gradient of P is ``slope`` times the force.
     """
     cosine, sine = turned
     ux, uy, _ = slip_of_nodes(to_slip, velocities)

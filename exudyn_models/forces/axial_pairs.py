@@ -1,7 +1,7 @@
 """Friction about one axis: regularised between rotors, or with exact stick between any bodies.
 
 The slip of the centre is zero. With the mean radius r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P
-< ε. Points share this equally. Constant load and coefficient need no compiled code.
+< ε. Points share this moment equally. Constant load and coefficient need no compiled code.
 
 A contact with exact stick is sliding, locked or open. The moment of a sliding contact does not depend on the sign of
 the slip, so the equations stay smooth across zero slip. While the contact is locked, a constraint holds the spins
@@ -157,7 +157,7 @@ class RowLaw:
 
     @property
     def parts(self) -> Sequence[RowLaw]:
-        """Laws with own locks: this one, or those of several points."""
+        """Laws with locks of their own: this law, or the laws of several points."""
         return (self,)
 
     @property
@@ -188,7 +188,7 @@ class RowLaw:
         raise NotImplementedError
 
     def moment(self, t: float, spin: float) -> float:
-        """Return the moment f in N m in slip, without that of the constraint."""
+        """Return the moment f in N m in slip, without the moment of the constraint."""
         raise NotImplementedError
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
@@ -309,7 +309,7 @@ class AxialStick(RowLaw):
         return self.moment(0.0, 0.0) * np.array(self.gradient([]))
 
     def moment(self, t: float, spin: float) -> float:
-        """Return the moment in N m on the disc, without that of the constraint."""
+        """Return the moment in N m on the disc, without the moment of the constraint."""
         if not self.slides:
             return 0.0
         direction = int(self.mode or 0)

@@ -7,11 +7,11 @@ The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S, so 
 Near rest the laws are regularised, but *exact* as soon as all slip reaches ε. With v/√(v²+ε²) every release would
 leave an error of ε^0.8; here all errors are of first order in ε.
 
-- *The contact as a whole* is viscous for P < ε: force and moment are those for the same direction of (u, S) at P = ε,
-  times P/ε. So a disc creeps with P < ε if and only if Coulomb friction could hold it.
+- *The contact as a whole* is viscous for P < ε: force and moment have their values for the same direction of (u, S)
+  at P = ε, times P/ε. So a disc creeps with P < ε if and only if Coulomb friction could hold it.
 - *One of several points* is regularised when it passes through rest, because its friction alone could jump. Below δ
-  its own friction is viscous. While its slip v is below 4δ/3 the friction of the others is that for a centre of
-  rotation closer to the point: for their slip minus v if v < δ, and minus v·(4 − 3v/δ) beyond. So the force of the
+  its own friction is viscous. While its slip v is below 4δ/3, the friction of the others belongs to a centre of
+  rotation closer to the point: to their slip minus v if v < δ, and minus v·(4 − 3v/δ) beyond. So the force of the
   point grows from zero to its share of μN, while the others act as if the disc pivots about it. δ, see
   ``laws/places``, ensures that at P = ε no two points are slower than 4δ/3.
 """
@@ -67,8 +67,9 @@ SECANT = 0.3
 
 There F = K·slip with the secant K, which depends on the direction only. Newton's method starts from the slip without
 acceleration, thousands of times the creep. With the derivative alone it cycles for one load in ten on six points, and
-one in six on three; with a share of 0.3 it converged for all, in 7 iterations. On three feet with unequal shares 5 of
-100 loads take more than 25 iterations, and on four feet in a line 13; the solver then takes a smaller step.
+for one in six on three points. With a share of 0.3 it converged for all loads, in 7 iterations. On three feet with
+unequal shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13; the solver then takes a
+smaller step.
 """
 
 
@@ -292,7 +293,7 @@ def _derivatives_of_points(
 def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
-    """Return P, its gradient in (u_x, u_y, φ̇ − ω, φ), and the held point or, without one, the slowest."""
+    """Return P, its gradient in (u_x, u_y, φ̇ − ω, φ), and the held point, or the slowest point if none is held."""
     _, points, _, _, held, table = contact
     mean, lowest, slow = 0.0, math.inf, held
     by_mean = np.zeros(4)
@@ -321,11 +322,11 @@ def _slip_of_point(
 def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Like ``derivatives_by_slip``, for circles."""
+    """Return the same as ``derivatives_by_slip``, for circles."""
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    # At rest the slope depends on the direction of the next slip; this one assumes no rotation.
+    # At rest the slope depends on the direction of the next slip; this slope assumes no rotation.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
     by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
     by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)

@@ -33,8 +33,8 @@ AT_REST = 1e-200
 class LoadAndCoefficient:
     """Friction coefficient μ and normal load N (in N) of a contact, which may be changed between runs.
 
-    They are those of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static divided by
-    sliding friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a
+    They have the meaning of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static divided
+    by sliding friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a
     function takes other arguments; in a run, if a function returns an invalid number.
     """
 

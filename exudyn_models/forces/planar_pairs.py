@@ -1,6 +1,6 @@
 """Friction of a planar disc on the ground, a rotor or a planar master, in closed form.
 
-The arguments are those of the functions in ``any_pair``. A force costs 0.55 (pin) to 0.7 times as much, a Jacobian
+The arguments are the same as in ``any_pair``. A force costs 0.55 (pin) to 0.7 times as much, a Jacobian
 0.35 to 0.6 times, and the first contact takes half as long to compile.
 """
 
@@ -47,7 +47,7 @@ def jacobian_in_the_plane(
     """Return the derivatives of the negative forces, shape (n, n), if ``factor`` does not depend on the motion."""
     contact, motion, _, disc = _contact_and_motion(parameters, factor, q, q_t)
     derivatives = ring_friction_derivatives(*motion, contact)
-    # The ground is a planar master without coordinates, a rotor one without x and y.
+    # The ground is a planar master without coordinates, and a rotor is a planar master without x and y.
     hidden = SIZES[PLANAR] - disc
     return _over_both_nodes(derivatives, position_factor, velocity_factor)[hidden:, hidden:].copy()
 
@@ -77,7 +77,7 @@ def _contact_and_motion(
 
 @compiled
 def _over_both_nodes(derivatives: FloatArray, position_factor: float, velocity_factor: float) -> FloatArray:
-    """Return minus the derivatives on two planar nodes from those of (F_x, F_y, M, M_master) by ``Relative``."""
+    """Return minus the derivatives on two planar nodes, from those of (F_x, F_y, M, M_master)."""
     by_nodes = np.zeros((4, 6))
     for i in range(4):
         dx, dy, angle, dvx, dvy, master_spin, disc_spin = derivatives[i]

@@ -42,8 +42,8 @@ def support_functions(
 ) -> tuple[ForceFunction, JacobianFunction]:
     """Return force and Jacobian of a support on the nodes of base and disc.
 
-    ``reference`` contains the reference coordinates of both, shape (n,). The model omits the first ``hidden``, which
-    are zero.
+    ``reference`` contains the reference coordinates of both, shape (n,). The model omits the first ``hidden``
+    coordinates, which are zero.
     """
     if kinds[0] == PLANAR and kinds[2] == NO_MOUNTS:
         force = _force_on_flat_base(hidden, reference, offset, law)

@@ -58,7 +58,7 @@ axis, and the ground rests in it. The second is the frame of the contact in the 
 """
 
 Kinds = tuple[int, int, Mounts]
-"""Kinds of the nodes of master and disc, and mounts; ``NO_MOUNTS`` if its frames are those of the nodes.
+"""Kinds of the nodes of master and disc, and mounts; ``NO_MOUNTS`` if the contact uses the frames of the nodes.
 
 Rotors and the ground then have the global z axis through the origin.
 """
@@ -66,7 +66,7 @@ Rotors and the ground then have the global z axis through the origin.
 Floats = Sequence[float]
 
 Array = NDArray[Any]
-"""Array of real numbers, or of complex ones for derivatives."""
+"""Array of real numbers, or of complex numbers for derivatives."""
 
 
 Vector = tuple[Any, Any, Any]
@@ -80,9 +80,9 @@ Axes = tuple[Vector, Vector, Vector]
 def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
     """Return J, shape (3, n), the axes of the contact on the master, and angle and place of the disc in these axes.
 
-    The angle, as cosine and sine, is that of the x axis of the contact on the disc, or of its y axis if its x axis
-    lies along the master's z axis. The place is x and y (m) of the contact. ``coordinates``, in m and rad, are those
-    of master and disc including reference values, n in all.
+    The angle, as cosine and sine, refers to the x axis of the contact on the disc, or to its y axis if its x axis
+    lies along the master's z axis. The place is x and y (m) of the contact. ``coordinates``, in m and rad, belong to
+    master and disc and include reference values, n in all.
     """
     master, disc, mounts = kinds
     return _slip_and_place(master, disc, mounts, coordinates)

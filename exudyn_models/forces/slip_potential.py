@@ -6,8 +6,8 @@ speed P(U, W) is a complete elliptic integral, computed by an arithmetic-geometr
 For an annulus P is the mean over its rings, weighted by the pressure, by Gauss's rule over the radius. The slopes of
 P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point is at rest. The rule is split there, and a substitution
 r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. The error of n rings per side falls like n^(−12), and
-that of the curvatures like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the largest values. If r₀ is
-outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
+the error of the curvatures like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the largest values. If r₀ is
+outside the annulus the error is 1e-14, and it is larger only within a thousandth of the edge.
 """
 
 import math

@@ -5,7 +5,7 @@ with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²
 friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_and_place`` it is the damper D =
 (μN/ε)·Jᵀ·V·J between two bodies.
 
-For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
+If P > ε, one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
 μN over the δ of ``friction_laws``.
 """
 
@@ -42,7 +42,7 @@ class StickDampers:
     def at(self, t: float, coordinates: FloatArray) -> FloatArray:
         """Return D and the damper of each point that can stick alone, shape (1 + points, n, n).
 
-        ``coordinates``, shape (n,), are those of the nodes at the time t (s), without reference values.
+        ``coordinates``, shape (n,), describe the nodes at the time t (s), without reference values.
         """
         place = self.reference + coordinates
         to_slip, _, (cosine, sine), (x, y) = slip_and_place_of_nodes(self.kinds, place)
@@ -56,7 +56,7 @@ class StickDampers:
 def slip_dampers(contact: Contact, angle: float) -> FloatArray:
     """Return V/ε in s/m and s m, and the same for each point that sticks alone, shape (1 + points, 3, 3).
 
-    ``angle`` (rad) is that of the disc's first point.
+    ``angle`` (rad) is the angle of the disc's first point.
     """
     _, points, _, epsilon, held, table = contact
     if points <= CONTINUOUS:

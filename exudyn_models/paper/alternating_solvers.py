@@ -22,7 +22,7 @@ from reference_model.trajectory import LOOK_BACK
 CREEP_NEWTON_TOLERANCE = 1e-6
 """Residual of Newton's method during creep, relative to μN (and μN·R, if that is smaller).
 
-It is a millionth of the creep, and exceeds rounding errors down to ε ~ 1e-11.
+This error is a millionth of the creep, and exceeds rounding errors down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
@@ -32,7 +32,7 @@ CREEP_ANGLE = 0.15
 """Rotation of the ground in rad per step of creep: the error of a step h is (ωh)²/12, 0.2 % of the creep."""
 
 SLOW = 100.0
-"""Smallest ratio of slow to fast relaxation time for steps that resolve the slow one."""
+"""Smallest ratio of slow to fast relaxation time for steps that resolve only the slow relaxation."""
 
 STEPS_OF_RELAXATION = 20.0
 """Steps of creep per slow relaxation time."""
@@ -87,7 +87,7 @@ def solve_in_turns(
     For a creeping part (the whole contact or one of several points) the model extends the viscous part of the law
     without limit, so the law's kink cannot disturb Newton's method. The creep ends between two steps.
 
-    All numbers are in units that make the motion of order one; ``seconds`` is the unit of time in s, for messages.
+    All numbers are scaled so that the motion is of order 1; messages need the unit of time, ``seconds``, in s.
     """
     motion = _Turns(
         contact, solver, friction, Recording(contact, times), StepCount(float(times[-1]), seconds=seconds)
@@ -175,8 +175,8 @@ class _Turns:
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the index of the last step before smaller steps are needed, or None.
 
-        They are needed by a release at ``crossing``, or by a load so close to the friction limit that the error of
-        the creep could cross it.
+        Smaller steps are needed for a release at ``crossing``, or for a load so close to the friction limit that the
+        error of the creep could cross the limit.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING

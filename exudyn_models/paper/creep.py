@@ -39,10 +39,10 @@ class RegularisedContact:
 
     @cached_property
     def relaxation_times(self) -> tuple[float, float]:
-        """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
+        """Relaxation times in s of slip below ε to creep: the shorter and the longer time of centre and rim.
 
-        The resistance per m/s is μN/ε for a pin, at least half of that for a disc or its rim on a continuous ring,
-        and 1/n of that for one of n points at rest. The inertia of the rim, J/R², may be far larger than the mass.
+        The resistance per m/s is μN/ε for a pin, at least half as large for a disc or its rim on a continuous ring,
+        and 1/n as large for one of n points at rest. The inertia of the rim, J/R², may be far larger than the mass.
         """
         system = self.system
         if system.friction_force == 0.0:
@@ -107,8 +107,8 @@ class RegularisedContact:
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
         """Return the load at rest divided by the friction limit, shape (n,), for a system that creeps as a whole.
 
-        It is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the creep,
-        divided by μN·P.
+        The result is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the
+        creep, divided by μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)

@@ -39,9 +39,9 @@ def simulate_joint(
 ) -> Trajectory:
     """Return the motion of a joint by ``TrapezoidalIndex2``, of second order, with exact stick.
 
-    Arguments and errors are those of ``exudyn_models.simulate``. The state is the angle in rad and the spin in rad/s.
-    With ``native``, friction is that of Exudyn's ``CoordinateSpringDamperExt``, whose stiff bristle holds the joint.
-    It deflects by up to 1e3 tolerances in rad.
+    Arguments and errors are the same as in ``exudyn_models.simulate``. The state is the angle in rad and the spin in
+    rad/s. With ``native``, Exudyn's ``CoordinateSpringDamperExt`` supplies friction, whose stiff bristle holds the
+    joint. This bristle deflects by up to 1e3 tolerances in rad.
     """
     state, grid = finite_numbers("initial_state", initial_state), checked_times(times)
     if state.shape != (2,):

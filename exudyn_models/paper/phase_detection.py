@@ -89,8 +89,8 @@ NEIGHBOURS = 100
 def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
     """Return which ``steps`` are needed to find the phases, shape (n,).
 
-    These are the ends of each uniform run, its largest slip, the last step whose load friction can hold, and the step
-    that it holds most clearly.
+    These are the ends of each uniform run, the step of its largest slip, the last step whose load friction can hold,
+    and the step whose load it holds most clearly.
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)
@@ -136,7 +136,7 @@ def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
     """Return whether friction can hold a creeping system, according to all steps with slip.
 
     A load that friction cannot hold lets the slip pass through zero, and then its direction relative to the slip
-    reverses. It counts in both directions.
+    reverses. The limit applies in both directions.
     """
     moving = ratio > 0.0
     if not np.any(moving):

@@ -17,7 +17,7 @@ ComplexArray = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Axes:
-    """Axes that turn with ``speed`` (rad/s) and coincide with the fixed ones at the time ``since`` (s).
+    """Axes that turn with ``speed`` (rad/s) and coincide with the fixed axes at the time ``since`` (s).
 
     A sticking body rests in axes that turn with the master disc.
     """
@@ -82,7 +82,7 @@ class Recording:
         return self._recorded == len(self.times)
 
     def add(self, run: Steps, axes: Axes) -> None:
-        """Record a run in ``axes``, which starts where the previous one ended."""
+        """Record a run in ``axes``, which starts where the previous run ended."""
         stop = int(np.searchsorted(self.times, run.times[-1], side="right"))
         asked = slice(self._recorded, stop)
         self.states[asked] = axes.fixed_states(self.times[asked], states_at(run, self.times[asked]))

@@ -1,4 +1,4 @@
-"""Units that make a motion of order one, and its scales, which determine the steps and tolerances of a run.
+"""Units that make a motion of order 1, and the scales that determine the steps and tolerances of a run.
 
 Tolerances therefore do not depend on SI units. The scales are in the units of ``system`` and ``state``.
 """
@@ -88,9 +88,9 @@ class Units:
 class Scales:
     """Scales of a run.
 
-    ``time`` is that of ``time_scale``; ``motion``, in m and m/s, the scale of DOPRI5's error: at least 1, or the size
-    of the motion; ``angle_rounding`` the rounding error in rad of the angle of a disc; ``force`` > 0 the scale of
-    Newton's residual, the smaller of forces in N and moments in N m.
+    ``time`` is the result of ``time_scale``; ``motion``, in m and m/s, is the scale of DOPRI5's error: at least 1, or
+    the size of the motion; ``angle_rounding`` the rounding error in rad of the angle of a disc; ``force`` > 0 the
+    scale of Newton's residual, the smaller of forces in N and moments in N m.
     """
 
     time: float
@@ -112,8 +112,8 @@ class Scales:
 def time_scale(system: System, state: FloatArray, span: float) -> float:
     """Return the time scale of the motion in s: the shortest of 1/k, 1/|ω|, m/β and ``span``.
 
-    A disc adds its spin, that of its shaft, and J/b. For a hardening support k is that at the largest deflection that
-    the initial energy allows. A stop counts as touched.
+    A disc adds its spin, the speed of its shaft, and J/b. For a hardening support k belongs to the largest deflection
+    that the initial energy allows. A stop counts as touched.
     """
     stiffest = hardened_stiffness(system, state) + system.stop_stiffness
     rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]
@@ -141,7 +141,7 @@ def support_energy(system: System, state: FloatArray) -> float:
 def _size_of_motion(system: System, state: FloatArray) -> float:
     """Return the largest of 1, distances in m and speeds in m/s.
 
-    A disc adds its spin and those of shaft and master, but not its angle, whose origin is arbitrary.
+    A disc adds its spin and the speeds of shaft and master, but not its angle, whose origin is arbitrary.
     """
     position, velocity = state.reshape(2, -1)
     sizes = [1.0, math.hypot(*position[:2]), abs(system.offset), math.hypot(*velocity[:2])]

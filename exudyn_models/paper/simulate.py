@@ -39,7 +39,7 @@ REGULARISATION_PER_TOLERANCE = 100.0
 """Ratio of ε, in the motion's own unit of speed, to the tolerance (study in ``benchmarks/exudyn_contact.py``)."""
 
 STEP_TOLERANCE = 1e-2
-"""Ratio of DOPRI5's tolerance to the requested one, because errors of thousands of steps accumulate."""
+"""Ratio of DOPRI5's tolerance to the requested tolerance, because errors of thousands of steps accumulate."""
 
 DISC_STEP_TOLERANCE = 1e-3
 """The same for a disc: at U = W the ring's friction has an infinite slope, and the spin keeps the error."""
@@ -84,8 +84,8 @@ def simulate(
         Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
         the last time.
     tolerance
-        Requested accuracy, relative to the motion's own length and speed, see ``scales``. While the contact
-        slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
+        Requested accuracy, relative to the motion's own length and speed, see ``scales``. The explicit solver keeps
+        the error near it while the contact slips. Stick and pivoting add errors of first order in the regularisation.
     regularisation
         ε in m/s below which friction is viscous; by default 100·tolerance times the motion's own speed, reported as
         ``solution.regularisation``. Keep it well above the tolerance. For very soft springs pass ε explicitly,
@@ -131,8 +131,8 @@ def simulate_fixed_step(
     """Return the motion by one Exudyn integrator with the constant step ``step`` (s), for convergence studies.
 
     ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha" or "TrapezoidalIndex2" (implicit,
-    order 2). An explicit one needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is nan.
-    Raises as ``simulate``.
+    order 2). An explicit integrator needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is
+    nan. Raises as ``simulate``.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -147,10 +147,10 @@ def simulate_fixed_step(
 
 @dataclass(frozen=True)
 class Run:
-    """A motion to compute from time 0 on, in units that make it of order one.
+    """A motion to compute from time 0 on, in units that make it of order 1.
 
-    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. ``tolerance`` is nan for
-    fixed steps; ``began`` is the start by ``time.perf_counter``.
+    Exudyn does not allow negative times, loses digits at large times, and has absolute tolerances. ``tolerance`` is
+    nan for fixed steps; ``began`` is the start by ``time.perf_counter``.
     """
 
     given: tuple[System, FloatArray, FloatArray]

@@ -36,7 +36,7 @@ def MainSystemCreateRingFriction(
     """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
 
     Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. An Exudyn ground, or None, is a master at
-    rest. All other arguments and errors are those of ``add_ring_friction``.
+    rest. All other arguments and errors are the same as in ``add_ring_friction``.
     """
     master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
@@ -74,7 +74,7 @@ def MainSystemCreateRadialSupport(
     """Add springs, a stop and a damper from a base to a disc; return the handle with the connector's ``item``.
 
     Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. The base may be an Exudyn ground, or
-    None. All other arguments and errors are those of ``add_radial_support``.
+    None. All other arguments and errors are the same as in ``add_radial_support``.
     """
     base, disc = _two_bodies(bodyNumbers)
     return add_radial_support(

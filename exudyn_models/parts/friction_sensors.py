@@ -45,8 +45,8 @@ BAND = 0.01
 class RingFriction:
     """Handle of a friction contact added by ``add_ring_friction``.
 
-    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are those of the master, unless it is the
-    ground, and of the disc.
+    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are the nodes of the master, unless it is
+    the ground, and of the disc.
     """
 
     mbs: Any
@@ -66,7 +66,7 @@ class RingFriction:
         friction_coefficient: Coefficient | None = None,
         normal_load: NumberOrFunction | None = None,
     ) -> None:
-        """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present one.
+        """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present value.
 
         Raises ``ValueError`` if a number is out of range; both then stay unchanged.
         """
@@ -103,7 +103,7 @@ class RingFriction:
         - ``"power"``: heating power of friction, in W.
         - ``"heat"``: its integral since the start, in J; the solver integrates it with all coordinates.
 
-        ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
+        ``options`` are options of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
         Raises ``ValueError`` for other quantities.
         """
         require_choice("quantity", quantity, get_args(Quantity))

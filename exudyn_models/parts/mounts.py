@@ -30,7 +30,7 @@ indices: Any = exu  # the index types are missing from its type hints
 ALL = tuple(KINDS.values())
 
 BODIES = ("RotationalMass1D", "RigidBody2D", "RigidBody")
-"""Objects, by Exudyn's names, whose nodes may be those of ``KINDS``."""
+"""Objects, by Exudyn's names, whose nodes may have one of the ``KINDS``."""
 
 FLAT = (GROUND, ROTOR, PLANAR)
 """Kinds whose axis of rotation is fixed."""
@@ -112,7 +112,7 @@ def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
 def kinds_at(mbs: Any, master: Side, disc: Side, places: FloatArray) -> list[Kinds]:
     """Return the kinds and mounts of pins at ``places`` on the disc: x and y in m first, shape (n, 2 or more).
 
-    They lie in the plane of contact, with x along that of the two axes of the disc whose angle the contact has.
+    They lie in the plane of contact, with x along the axis of the disc that defines the angle of the contact.
     """
     axis = _axes_and_spin(mbs, master)[0] @ master.rotation[:, 2] @ _axes_and_spin(mbs, disc)[0]
     x, y, _ = disc.rotation.T

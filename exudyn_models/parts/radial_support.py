@@ -5,7 +5,7 @@ body, w and ẇ are relative to the turning body, so a rigid motion of both caus
 the body, including the moment −d×F.
 
 A linear support on the ground is Exudyn's ``CartesianSpringDamper``, which takes a tenth of the time of a Python
-function. Any other is a massless ``ObjectGenericODE2``.
+function. Any other support is a massless ``ObjectGenericODE2``.
 """
 
 from collections.abc import Sequence
@@ -47,7 +47,7 @@ Quantity = Literal["deflection", "force", "stored_energy", "power"]
 class RadialSupport:
     """Handle of a support added by ``add_radial_support``.
 
-    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are those of the base, unless it is the
+    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are the nodes of the base, unless it is the
     ground, and of the disc.
     """
 
@@ -81,7 +81,7 @@ class RadialSupport:
         - ``"stored_energy"``: energy of springs and stop, in J.
         - ``"power"``: heating power of the damper, in W.
 
-        ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
+        ``options`` are options of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
         Raises ``ValueError`` for other quantities.
         """
         quantities = get_args(Quantity)

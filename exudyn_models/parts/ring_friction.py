@@ -8,7 +8,7 @@ pressure. Friction is Coulomb's above the slip speed ε and viscous below.
 its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a master at
 rest. ``computeMassMatrixInversePerBody`` must stay False, because nodes are shared with their bodies.
 
-The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
+The axis of the contact is the z-axis of the master's body, through its node, or the z-axis of the ground. A
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
 ``rotationMarker1`` of Exudyn's joints; the x-axis on the disc points to the first contact point. The plane of contact
 passes through the disc's node or marker, across this axis; a small tilt of the disc is neglected. The load acts only
@@ -21,8 +21,8 @@ through friction and presses nothing together.
 - ``slip_speed`` in m/s, the mean slip speed P of the contact,
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
-They may read sensors of ``mbs``, but of this contact only those of slip and heat. The Jacobian contains their
-derivatives with respect to all arguments except time, and none through sensors.
+They may read sensors of ``mbs``, but only the slip and heat sensors of this contact. The Jacobian includes their
+derivatives with respect to all arguments except time. It does not include dependencies through sensors.
 
 *Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
 ``solve_dynamic`` with an implicit solver. Switching times are as accurate as the steps. A contact on one axis that

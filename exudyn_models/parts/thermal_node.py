@@ -54,7 +54,7 @@ class ThermalNode:
     def add_sensor(self, **options: Any) -> Any:
         """Add a sensor of T and of the heat in J lost to the surroundings; return its ``SensorIndex``.
 
-        ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
+        ``options`` are options of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
         """
         return node_sensor(self.mbs, self.node, exu.OutputVariableType.Coordinates, **options)
 

@@ -104,7 +104,7 @@ def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
 def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
     """Return coordinates without reference values and their rates, at half the cost of the nodes' own outputs.
 
-    Other arguments and errors are those of ``places_of``.
+    Other arguments and errors are the same as in ``places_of``.
     """
     data, places = mbs.systemData, places_of(mbs, connector, item)
     q, q_t = (read(configuration, False) for read in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))

@@ -1,4 +1,4 @@
-"""Exudyn's items, and functions that add frequent ones."""
+"""Exudyn's items, and functions that add frequently used items."""
 
 from collections.abc import Callable, Sequence
 from functools import wraps

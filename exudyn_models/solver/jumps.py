@@ -15,7 +15,7 @@ from reference_model.systems import FloatArray
 _NAMES = "names_of_powers"
 
 NEIGHBOURS = 2
-"""Number of steps on each side that a jump is compared with."""
+"""Number of steps on each side to compare a jump with."""
 
 STEEPER = 5.0
 """Smallest ratio of a jump to neighbouring changes, and of their slopes; a smooth curve reaches about 2."""

@@ -40,7 +40,7 @@ def newton_without_restart(mbs: Any, newton: Any) -> AbstractContextManager[None
 
 @contextmanager
 def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[None]:
-    """Make Exudyn call ``wrap(own)``, where ``own`` is the model's user function or one that does nothing.
+    """Make Exudyn call ``wrap(own)``, where ``own`` is the model's user function or a function that does nothing.
 
     ``place`` is "PreStep", "PostNewton" or "PostStep".
     """

@@ -3,8 +3,9 @@
 - *Load jumps.* A step across a load jump has an error of at least the jump times the part of the step before it. With
   ``breaks`` the run stops just before these times and continues just after. A ``RuntimeWarning`` reports jumps that
   ``jumps`` finds.
-- *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and report
-  success with a state that is not finite. A check after every step (about 1.5 μs) ends such a run.
+- *Explicit solvers.* Exudyn's explicit solvers ignore algebraic constraints, or lose their order when they eliminate
+  constraints, and report success with a state that is not finite. A check after every step (about 1.5 μs) ends such a
+  run.
 - *Fixed explicit steps.* A ``RuntimeWarning`` reports steps beyond the ``step_limit`` of sticking contacts.
 - *Implicit solvers.* The run starts with the actual rates of heat and work (``starting_rates``). Repeated steps start
   from their complete first state (``repeated_steps``). Steps that skip a peak of friction are repeated or reported

@@ -25,8 +25,8 @@ FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
 class Model:
     """Assembled model of a system, with sensors for the state of one body.
 
-    ``container`` owns ``mbs`` and must live as long. The body has ``size`` coordinates of ``mbs`` from ``first`` on,
-    which ``sensors`` record with their first and second time derivatives.
+    ``container`` owns ``mbs`` and must live as long as ``mbs``. The body has ``size`` coordinates of ``mbs`` from
+    ``first`` on, which ``sensors`` record with their first and second time derivatives.
     """
 
     container: Any
@@ -41,7 +41,7 @@ class Steps:
     """States at the start and after every step of a solver.
 
     ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities; and
-    their ``accelerations``, shape (n, d). ``evaluations`` counts those of the equations of motion.
+    their ``accelerations``, shape (n, d). ``evaluations`` counts evaluations of the equations of motion.
     """
 
     times: FloatArray
@@ -72,7 +72,7 @@ step give the same results.
 
 @dataclass
 class StepCount(trajectory.StepCount):
-    """Counts the steps of a motion from 0 to ``end``, in units of time of ``seconds`` s."""
+    """Counts the steps of a motion from 0 to ``end``; the unit of time is ``seconds``."""
 
     seconds: float = 1.0
 

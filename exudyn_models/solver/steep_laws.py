@@ -1,7 +1,7 @@
-"""Detection of implicit steps that skip a peak of friction, such as that of ``static_ratio`` or a Stribeck curve.
+"""Detection of implicit steps that skip a peak of friction, due to ``static_ratio`` or a Stribeck curve.
 
-If friction falls within the slip change of a step, Newton's method may find a contact that holds, or one that has
-passed its peak and runs away.
+If friction falls within the slip change of a step, Newton's method may find a contact that holds, or a contact that
+has passed its peak and runs away.
 """
 
 import math
@@ -24,7 +24,7 @@ LEAST_FALL = 1e-3
 
 
 def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
-    """Repeat steps that skip a peak with a smaller size; warn if steps are fixed."""
+    """Repeat steps that skip a peak with a smaller step; warn if steps are fixed."""
     data, places = mbs.systemData, mbs.systemData.GetObjectLTGODE2
     contacts = [
         (np.array(places(item)), contact)

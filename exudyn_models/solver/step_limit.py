@@ -31,7 +31,7 @@ INTERVALS = {
     "RK67": 2.8656205,
     "VelocityVerlet": 2.0,  # as implemented in Exudyn, with velocities that lag behind in dampers
 }
-"""Z of the solvers with a fixed step: ẋ = −λx decays while λ·step < Z. All others choose their steps."""
+"""Z of the solvers with a fixed step: ẋ = −λx decays while λ·step < Z. All other solvers choose their steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +91,8 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     """Return the largest stable step in s of an explicit solver while all contacts of a model stick.
 
     It refers to the initial values and time 0, and is infinite without contacts. A disc that creeps about a point on
-    or near its circle of contact chatters from a quarter of this step on; at half of it, by less than 7 % of its
-    creep. The model is assembled if necessary.
+    or near its circle of contact chatters from a quarter of this step on. At half of this step the chatter is below 7
+    % of the creep. The model is assembled if necessary.
 
     ``solver_type`` is ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.
     Raises ``ValueError`` for any other solver, or a model with constraints or a singular mass matrix.

@@ -30,7 +30,7 @@ class Annulus(IsotropicContact):
 
     Friction is that of a :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's rule,
     split at the radius r₀ = U/|S| of a point at rest. With n rings the error falls like n^(−12), to about 1e-12 for n
-    = 16; that of the slopes falls like n^(−6), to about 1e-7.
+    = 16, and the error of the slopes like n^(−6), to about 1e-7.
 
     Parameters
     ----------

@@ -214,7 +214,7 @@ SINGULAR = 1e-15
 """Smallest ratio of determinant to squared trace of a Hessian, zero for points on one line."""
 
 ARMIJO = 1e-4
-"""Smallest ratio of a step's descent to that of its slope."""
+"""Smallest ratio of a step's descent to the descent that the slope predicts."""
 
 MOST_HALVINGS = 60
 

@@ -19,10 +19,10 @@ A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971,
 def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Points:
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
-    ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Its
-    triangles are cut into ``divisions``² equal ones, at most 100², with three points each. With their longest side h
-    the error falls like h⁴ if the centre of rotation lies outside the patch, otherwise like h² on average, because
-    friction jumps.
+    ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Each
+    of its triangles is cut into ``divisions``² equal triangles, at most 100², with three points each. If h is the
+    longest side of these triangles, the error falls like h⁴ for a centre of rotation outside the patch, and like h²
+    on average for a centre inside, where friction jumps.
 
     Raises ``ValueError`` if a number is invalid, or the polygon has no area or intersects itself.
     """

@@ -24,7 +24,7 @@ SINGULAR = 1e-15
 """Smallest ratio of determinant to squared trace of a Hessian, zero for points on one line."""
 
 ARMIJO = 1e-4
-"""Smallest ratio of a step's descent to that of its slope."""
+"""Smallest ratio of a step's descent to the descent that the slope predicts."""
 
 ROUNDING = 4e-16
 """Rounding error of a mean of unit vectors."""
@@ -156,7 +156,7 @@ def direction_of_points(x: float, y: float, angle: float, law: Law) -> tuple[flo
     """Return the unit vector of the slip that begins at rest: the direction n of fastest growth W·n.
 
     W is the growth of slip along n. W·n is a quasi-concave function where it is positive, so Newton's method on the
-    sphere starts from a direction of positive growth: that of h, or that of a force that is too large.
+    sphere starts from a direction of positive growth: the direction of h, or of a force that is too large.
     """
     fx, fy, _, sense = wrench(x, y, angle, law)
     c, s = math.cos(angle), math.sin(angle)

@@ -17,10 +17,10 @@ SLIPS, STICKS, PIVOTS = 1.0, 2.0, 3.0
 ) = range(20)  # fmt: skip
 """Indices into the memory of a run, which continues from it in the next call.
 
-It contains the next explicit step, the time of the last one, the number of recent short steps and the number that
-calls for collocation, the signs of the surfaces, the contact point that the slip belongs to, the sense of a pivot,
-the kind of the current phase, whether slip decays forever, the numbers of steps and evaluations, the work in explicit
-steps, the numbers of recorded times and phases, and whether the run continues.
+The memory contains the next explicit step, the time of the last step, the number of recent short steps and the number
+that calls for collocation, the signs of the surfaces, the contact point that the slip belongs to, the sense of a
+pivot, the kind of the current phase, whether slip decays forever, the numbers of steps and evaluations, the work in
+explicit steps, the numbers of recorded times and phases, and whether the run continues.
 """
 
 RUNS, ENDS, FAILS, FULL = 0.0, 1.0, 2.0, 3.0
@@ -46,7 +46,7 @@ def along(a: Unknowns, y: Unknowns, law: Law) -> float:
 
 @part
 def seen(y: Unknowns, law: Law, new: Law) -> Unknowns:
-    """Return the unknowns of ``new`` for those of ``law``; only the point differs."""
+    """Convert the unknowns of ``law`` to the unknowns of ``new``; only the point differs."""
     ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
     vx, vy = slip_of(ux, uy, y[4], y[5], new)
     return (y[0], y[1], vx, vy, y[4], y[5], y[6])

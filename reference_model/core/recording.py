@@ -163,7 +163,7 @@ def falling(y: Unknowns, delay: float, left: float, law: Law) -> Unknowns:
     share = delay / left if left > 0.0 else 1.0
     if law.point == CENTRE:
         return carried(y, delay, delay * (1.0 - 0.5 * share), 1.0 - share, law)
-    # The disc turns about a point that comes to rest: by the midpoint rule.
+    # The disc turns about a point that comes to rest; the midpoint rule gives its motion.
     f = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
     first, half = 0.5 * delay / f[6], 1.0 - 0.5 * share
     f = rates(

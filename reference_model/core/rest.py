@@ -83,7 +83,7 @@ def _turned(x: float, y: float, turn: float, law: Law) -> tuple[float, float]:
 
 @part
 def _spare(x: float, y: float, angle: float, turn: float, law: Law) -> float:
-    """Return the friction that is left after a turn; that of points is a lower bound."""
+    """Return the friction that is left after a turn; for points a lower bound."""
     px, py = _turned(x, y, turn, law)
     if len(law.around) > 0:
         return spare_of_points(px, py, angle + math.copysign(turn, law.omega), law)
@@ -266,8 +266,8 @@ def creep_of(y: Unknowns, law: Law, most: float) -> tuple[float, float, float, f
     """Return A, λ, B and Λ of slip s = A·exp(−λt) + B·exp(−Λt) that decays forever and is almost over.
 
     The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s, so to
-    first order in the distance s'' + b·s' + c·s = 0. A is zero if slip does not creep to rest within ``most``. The
-    law is that of the centre or of a pivot.
+    first order in the distance s'' + b·s' + c·s = 0. A is zero if slip does not creep to rest within ``most``.
+    ``law`` describes the centre or a pivot.
     """
     none = (0.0, 0.0, 0.0, 0.0)
     s = speed_of(y, law)

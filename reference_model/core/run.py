@@ -44,14 +44,14 @@ from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
 AT_REST = 1e-15
-"""Slip speed of a point, as a share of that of the centre, that is rounding error."""
+"""Slip speed of a point that is rounding error, as a share of the centre's slip speed."""
 
 NO_CREEP = (0.0, 0.0, 0.0, 0.0)
 
 
 @part
 def followed(y: Unknowns, law: Law) -> tuple[Unknowns, Law]:
-    """Return the unknowns and the law with the slip of the centre, or of a contact point that slips slowly."""
+    """Choose the slip of the centre or of a slow contact point as the unknown; return the unknowns and the law."""
     point = point_for(y, law)
     if point == law.point:
         return y, law
@@ -78,7 +78,7 @@ def pivots(y: Unknowns, memory: FloatArray, law: Law) -> bool:
 
 @part
 def departing(y: Unknowns, law: Law) -> tuple[tuple[float, float, float], Law]:
-    """Return the direction of the slip that begins: of all points, all but one, or one about which the disc turns."""
+    """Return the direction of the slip that begins: at all points, at all but one, or about a resting point."""
     if at_rest(y, law):
         point, sense = pivot_from_rest(y[0], y[1], y[5], law)
         if point != CENTRE:
@@ -108,8 +108,8 @@ def follow(
 
     The state contains the unknowns, and as a result the slip of the centre. The motion does not depend on
     ``most_work``. ``times`` are the requested times, (n,), ``out`` the unknowns without the time, (n, 6), and
-    ``phases``, (k, 8), contain kind, start and these unknowns. All is scaled; the run starts at time 0, with
-    errors of its steps of ``tolerance``.
+    ``phases``, (k, 8), contain kind, start and these unknowns. All values are scaled. The run starts at time 0, and
+    ``tolerance`` bounds the error of a step.
     """
     law = seen_from(int(memory[POINT]) - 1, memory[SENSE], law)
     y = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])

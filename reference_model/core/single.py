@@ -41,7 +41,7 @@ from reference_model.trajectory import Kind, SimulationError, Solution, StepCoun
 METHOD = "DOP853 in stretched time, Radau IIA where it is stiff; closed-form stick phases"
 
 LOCAL, LEAST = 0.05, 3e-14
-"""Tolerance of a step as a share of the motion's, and its smallest value."""
+"""Tolerance of a step as a share of the motion's tolerance, and its smallest value."""
 
 SUM, DENSITY = 10.0, 5.0
 """Largest sum of the errors of steps in tolerances, and number of steps per unit of time.
@@ -56,10 +56,11 @@ FIRST_STEP, FEW = 0.01, 15.0
 """First explicit step in stretched time, and number of short steps before collocation is tried."""
 
 MOST_WORK = 20_000.0
-"""Work of a call in explicit steps. It takes less than a second, then Python can handle an interruption."""
+"""Work of a call in explicit steps. A call takes less than a second, so Python can handle an interruption after
+it."""
 
 THINNEST = 1e-3
-"""Smallest width of an annulus over its radius: a difference of two discs loses digits in a thinner one."""
+"""Smallest width of an annulus over its radius; in a thinner annulus, the difference of two discs loses digits."""
 
 KINDS: dict[int, Kind] = {1: "slip", 2: "stick", 3: "pivot"}
 """Names of the kinds of phases."""

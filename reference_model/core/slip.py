@@ -39,7 +39,7 @@ REVERSAL = 1e-13
 """Slip below which slip that friction cannot hold counts as reversed; less for a point if the spin is slow too."""
 
 SOON = 0.1
-"""Longest time to the end of slip below REVERSAL that a parabola describes; the body moves by 1e-14 in it."""
+"""Longest time to the end of slip below REVERSAL while slip is a parabola; the body moves by 1e-14 in it."""
 
 FROZEN = 1e-9
 """Pace of stretched time below which explicit steps are so short that time hardly grows."""

@@ -34,13 +34,13 @@ from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
 FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12
-"""First step from rest, which shrinks until the motion is resolved, and the smallest."""
+"""First step from rest, which shrinks until the motion is resolved, and smallest step."""
 
 BRIEF = 1e-5
 """Longest slip from rest in closed form; its relative error is of this order."""
 
 COST = 4.0
-"""Work of a step of collocation relative to an explicit one, where it replaces several."""
+"""Work of a step of collocation in explicit steps, where it replaces several explicit steps."""
 
 WORK_OF_STEP = 50.0
 """Its work in explicit steps, for the length of a call."""
@@ -49,7 +49,7 @@ FAST = 2.0 / 3.0
 """Pace of stretched time where slip is so fast that friction turns it at the rate 1."""
 
 DAMPED = 3.0
-"""Step times the rates of the dampers below which they do not limit an explicit step."""
+"""Step times the rates of the dampers, below which the dampers do not limit an explicit step."""
 
 RISING = 10.0
 """Rate of relaxation times the step below which an explicit method is as efficient."""
@@ -72,7 +72,7 @@ def six(y: Unknowns) -> FloatArray:
 
 @part
 def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
-    """Return the extrapolation of a step of length ``before`` to the nodes of the next one, shape (NODES, 6)."""
+    """Return the extrapolation of a step of length ``before`` to the nodes of the next step, shape (NODES, 6)."""
     guess = np.empty((NODES, 6))
     for i in range(NODES):
         there = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)

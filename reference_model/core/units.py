@@ -1,4 +1,4 @@
-"""Units that make a motion of order one, and unknowns in them relative to the master disc."""
+"""Units that make a motion of order 1, and unknowns in these units relative to the master disc."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ class Units:
 class Frame:
     """Conversion between states in SI units and scaled unknowns relative to the master disc.
 
-    ``lengths`` are the units of x, y (m) and the angle (rad), ``speeds`` those of the relative velocities; for φ̇ − ω
-    the unit of r = κ(φ̇ − ω) in rad/s.
+    ``lengths`` are the units of x, y (m) and the angle (rad), ``speeds`` the units of the relative velocities; for φ̇
+    − ω the unit of r = κ(φ̇ − ω) in rad/s.
     """
 
     disc_speed: float

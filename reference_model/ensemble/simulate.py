@@ -28,7 +28,7 @@ MOST_POINTS = 24
 
 
 MOST_THREADS = 1024
-"""Limit of ``threads``; more than the processors have no use."""
+"""Limit of ``threads``; more threads than processors are useless."""
 
 
 def simulate_ensemble(
@@ -44,8 +44,8 @@ def simulate_ensemble(
 ) -> Ensemble:
     """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. Results do not depend in any bit on other trajectories or
-    on ``threads``. Raises ``ValueError`` if an argument is invalid.
+    The physics is the same as in :func:`reference_model.simulate`. Results are bitwise independent of the other
+    trajectories and of ``threads``. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class Task(NamedTuple):
 def parameter_table(
     system: System, varied: Mapping[str, FloatArray] | None = None, more: tuple[str, ...] = ()
 ) -> FloatArray:
-    """Return the parameters, then ``more``, shape (1 or n, parameters); ``varied`` ones (n,) differ by trajectory."""
+    """Return the parameters, then ``more``, shape (1 or n, parameters); ``varied`` (n,) differ by trajectory."""
     names = (*(OF_PIN if isinstance(system, PinOnDisc) else OF_DISC), *more)
     columns = [(varied or {}).get(name, getattr(system, name)) for name in names]
     return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns))).astype(float)

@@ -1,7 +1,7 @@
 """The closed forms of section 4 of the paper, one function per equation, and results of the same balances.
 
-Signs are those of :mod:`reference_model.formulas.pin`, with the given Ω/ω. If ω < 0, y and the spin change sign; if
-X0 < 0, x and y do.
+Signs are the same as in :mod:`reference_model.formulas.pin`, with the given Ω/ω. If ω < 0, y and the spin change
+sign; if X0 < 0, x and y do.
 """
 
 import itertools
@@ -120,7 +120,7 @@ def speed_difference_at(disc: DiscOnDisc, distance: float, alpha: float) -> floa
 def squared_distance(disc: DiscOnDisc, alpha: float) -> float:
     """Return A² in m² by the second line of (26), corrected, at α in rad; negative if no A exists.
 
-    (24) inserted into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Errors are those of
+    (24) inserted into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Raises the errors of
     :func:`reduced_parameters`.
     """
     return _squared_distance(

@@ -8,8 +8,9 @@ With z = z_m + ρ·exp(iψ), ψ̇ = κ, the deflection of the support is q + ρ�
 
 with the mean slip speed P of a ring, U = (ω − κ)ρ and V = ω|z_m|.
 
-The omitted second harmonic is proportional to X0, so the error of the mean is of order X0, like that of (18), which
-is this balance for C₃ = 0 to first order. ρ and κ do not depend on the sign of X0, so their errors are of order X0².
+The omitted second harmonic is proportional to X0, so the error of the mean is of order X0. Equation (18), which is
+this balance for C₃ = 0 to first order, has the same error. ρ and κ do not depend on the sign of X0, so their errors
+are of order X0².
 """
 
 from dataclasses import dataclass

@@ -234,7 +234,7 @@ class _Run:
         return found
 
     def begun(self) -> list[tuple[Kind, float, FloatArray]]:
-        """Return kind, start and first state of each phase; a reversal does not end one."""
+        """Return kind, start and first state of each phase; a reversal does not end a phase."""
         found: list[tuple[Kind, float, FloatArray]] = []
         for piece in self.pieces:
             kind: Kind = "slip" if piece.direction else "stick"

@@ -69,7 +69,7 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     dt + b∫(φ̇ − Ω)dt, where C is the force of the support divided by its deflection. So the residual shows errors in
     any force, and whether the integrator conserves energy.
 
-    The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
+    The code integrates a quintic spline through the samples of each phase, with an error of sixth order in the
     sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` for a single time.
     """
     if not isinstance(trajectory, Trajectory):
@@ -168,7 +168,7 @@ def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
 
 
 def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    # A spline needs an odd degree and more samples than that.
+    # A spline needs an odd degree and more samples than its degree.
     degree = min(SPLINE_DEGREE, (len(t) - 2) // 2 * 2 + 1)
     antiderivative = make_interp_spline(t - t[0], rates, k=degree).antiderivative()
     result: FloatArray = antiderivative(t - t[0])

@@ -22,7 +22,7 @@ VERSIONS = 4
 """Number of source versions whose compiled functions are kept."""
 
 UNUSED = 86_400.0
-"""Age in s of versions that are deleted; a running process may still need a younger one."""
+"""Age in s of versions that are deleted; a running process may still need a younger version."""
 
 
 @cache

@@ -33,8 +33,8 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    It runs without the interpreter lock. ``package`` is the folder of all sources compiled into it, and ``digest``
-    that of :func:`reference_model.numerics.cache_folders.digest_of_text` if it is known.
+    It runs without the interpreter lock. ``package`` is the folder of all sources compiled into it. ``digest`` is the
+    result of :func:`reference_model.numerics.cache_folders.digest_of_text` if it is known.
     """
 
     def __init__(self, function: Callable[..., None], package: Path, digest: str = "") -> None:

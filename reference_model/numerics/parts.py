@@ -12,13 +12,13 @@ PARTS: list[Callable[..., Any]] = []
 """Functions that compiled code calls."""
 
 INLINED: list[Callable[..., Any]] = []
-"""Those that are small and called often."""
+"""Functions that are small and called often."""
 
 WRITTEN_OUT: list[Callable[..., Any]] = []
 """Those that are large and have one caller."""
 
 REPLACED: dict[Callable[..., Any], Callable[..., Any]] = {}
-"""Functions that need Python, and those in their place in compiled code."""
+"""Functions that need Python, and their replacements in compiled code."""
 
 
 def part(function: Function) -> Function:

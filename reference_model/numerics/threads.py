@@ -46,7 +46,7 @@ class Threads(ThreadPoolExecutor):
                 self._at_work.discard(threading.get_ident())
 
     def _interrupt(self) -> None:
-        with self._guard:  # so a thread ends no work, and begins no other, meanwhile
+        with self._guard:  # so that no thread ends its work or begins new work meanwhile
             for thread in self._at_work:
                 number, kind = ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(number, kind)
@@ -58,7 +58,7 @@ class Threads(ThreadPoolExecutor):
         if kind is not None:
             self.shutdown(wait=False, cancel_futures=True)
             looks = 0
-            # a thread that is interrupted between its work and its note of that has ended
+            # a thread that is interrupted before it notes the end of its work has ended
             while self._at_work & {thread.ident for thread in threading.enumerate()}:
                 if looks % AGAIN == 0:
                     self._interrupt()

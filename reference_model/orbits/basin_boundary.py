@@ -25,7 +25,7 @@ from reference_model.systems import FloatArray, checked_state, finite_numbers, r
 COMPONENTS = ("x", "y", "vx", "vy")
 
 NEAR = 0.3
-"""Angle in rad within which a release counts as near that of the orbit; roots do not depend on it."""
+"""Angle in rad within which a release counts as near the release of the orbit; roots do not depend on it."""
 
 SPARE = 0.1
 """Error of a point as a multiple of the orbit's tolerance."""
@@ -77,7 +77,8 @@ class Separatrix:
     def miss(self, start: ArrayLike) -> float:
         """Return the angular distance from the orbit at the pin's first release near it.
 
-        It is positive for releases after that of the orbit, and ±NEAR without a near release, by the final motion.
+        It is positive for releases after the release of the orbit, and ±NEAR without a near release, by the final
+        motion.
         """
 
         def near(release: Release) -> bool:
@@ -113,7 +114,7 @@ class Separatrix:
 def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
     """Return the crossing of the basin boundary, shape (4,), on the straight line between two starts.
 
-    The boundary is the stable set of the saddle ``orbit``, whose tolerance is that of the point. Raises
+    The boundary is the stable set of the saddle ``orbit``, whose tolerance also applies to the point. Raises
     ``ValueError`` if the orbit does not separate two motions, or both starts lead to the same motion;
     ``RuntimeError`` if something other than this stable set separates them.
     """

@@ -1,9 +1,9 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pull equals friction, (7) with equality. So one number contains the motion before: the lag α of the
-pull behind that of the offset, between 0 and π. Orbits are the fixed points of the map from one α to the next, and
-its slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
-where the next stick phase vanishes.
+At a release the pull equals friction, (7) with equality. So one number contains the previous motion: the lag α of the
+pull behind the offset's pull, between 0 and π. Orbits are the fixed points of the map from one α to the next, and its
+slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps where
+the next stick phase vanishes.
 """
 
 import cmath
@@ -26,7 +26,7 @@ from reference_model.trajectory import Trajectory
 SEARCH_TIMES = (1.5, 16.0)
 """Search times for a release, in units of the longer of a turn of the disc and a free period of the pin.
 
-A pin that does not stick within the second is assumed never to stick.
+A pin that does not stick within the second of these times is assumed never to stick.
 """
 
 NODES = 48
@@ -97,7 +97,7 @@ class ReleaseMap:
         return np.array((z.real, z.imag, v.real, v.imag))
 
     def angle(self, state: ArrayLike) -> float:
-        """Return the lag of the pull behind that of the offset, for a ``state`` of rest, shape (4,)."""
+        """Return the lag of the pull behind the offset's pull, for a ``state`` of rest, shape (4,)."""
         x, y = np.asarray(state)[:2].tolist()
         pull = self._offset_pull + self._carried_pull * complex(x, y)
         return -math.copysign(1.0, self.pin.disc_speed) * cmath.phase(pull / self._offset_pull)
@@ -119,7 +119,7 @@ class ReleaseMap:
                 yield Release(slip.start, self.angle(slip.initial_state), stick.end - stick.start)
 
     def after(self, angle: float) -> Release | None:
-        """Return the release after one at ``angle``; None if the pin never sticks again."""
+        """Return the release after a release at ``angle``; None if the pin never sticks again."""
         # Rounding may hold the pin for another moment.
         return self.first(self.state(angle), lambda release: release.time > release.stick_time)[0]
 
@@ -135,7 +135,7 @@ class ReleaseMap:
         return 1.0 + near + (near - far) / 3.0
 
     def pieces(self) -> Iterator[tuple[float, float]]:
-        """Yield intervals of angles with a next stick phase, in increasing order."""
+        """Yield the intervals of angles that lead to another stick phase, in increasing order."""
         nodes = (np.arange(NODES) + 0.5) * math.pi / NODES
         sticks = [self.after(node) is not None for node in nodes.tolist()]
         start: float | None = EDGE if sticks[0] else None

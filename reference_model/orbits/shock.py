@@ -1,6 +1,6 @@
 """The smallest shock that throws a pin from its self-centred equilibrium into the whirl.
 
-A shock changes only the velocity. The smallest one is the nearest point of the basin boundary in the plane of
+A shock changes only the velocity. The smallest shock is the nearest point of the basin boundary in the plane of
 velocities through the equilibrium. End states of many starts show its approximate direction.
 """
 

@@ -71,7 +71,7 @@ FARTHEST_PERIOD = 0.5
 UNRESOLVED = 1e-6
 """Largest amplitude of the harmonics beyond a third of the number of samples, relative to the largest amplitude.
 
-The harmonic whose number is that of the samples, which the trapezoidal rule takes for a mean, is smaller.
+The harmonic with the number of the samples, which the trapezoidal rule takes for a mean, is smaller.
 """
 
 COLLAPSED = 1e-6
@@ -79,7 +79,7 @@ COLLAPSED = 1e-6
 
 
 MOST_NOISE = 1e-2
-"""Largest relative noise of the states that still leaves an orbit to be found."""
+"""Largest relative noise of the states with an orbit that can still be found."""
 
 
 @dataclass(frozen=True)
@@ -225,7 +225,7 @@ class Orbit:
     def multipliers(self) -> tuple[complex, ...]:
         """Floquet multipliers, largest first.
 
-        One is 1, for a shift in time, and a second one if the motion recurs up to a rotation.
+        One multiplier is 1, for a shift in time; a second is 1 if the motion recurs up to a rotation.
         """
         multipliers = np.linalg.eigvals(self.monodromy)
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))
@@ -302,7 +302,7 @@ def shoot(
 
 
 def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
-    """Fix x at y = 0 and make the load unknown, starting from that of an orbit as ``guess``."""
+    """Fix x at y = 0 and make the load unknown, starting from the load of the orbit ``guess``."""
     unknowns[[X, Y]] = x, 0.0
     sought[sought.index(X)] = LOAD
     if isinstance(guess, Orbit):
@@ -336,7 +336,7 @@ def without_angle(state: FloatArray) -> FloatArray:
 def size_of(system: System, part: FloatArray) -> FloatArray:
     """Return the scales of the state without angle, of the same shape."""
     size = np.full(len(part), np.max(np.abs(part[:SPIN])))
-    if isinstance(system, DiscOnDisc):  # the speed of the rim counts like that of the centre
+    if isinstance(system, DiscOnDisc):  # the speed of the rim counts like the speed of the centre
         size[SPIN] /= system.contact_radius
     return size
 

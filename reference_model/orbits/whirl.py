@@ -111,7 +111,7 @@ def modulated_cycle(
     the radius, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
     ``guess`` is the cycle for nearby parameters, or a simulation that ends close to the cycle, covers more than a
-    period of the modulation and resolves a revolution. Other arguments are those of :func:`whirl_orbit`.
+    period of the modulation and resolves a revolution. Other arguments are the same as in :func:`whirl_orbit`.
 
     Raises ``ValueError`` if the offset is not zero, a disc rests on single points, or ``guess`` does not recur;
     ``RuntimeError`` without convergence, or if the radius turns out to be constant.
@@ -226,7 +226,7 @@ def last_whirl(
     """Return the whirl at the smallest load with a whirl: the fold, where it meets the unstable whirl.
 
     The branch is followed from the load of ``system`` towards the axis, to the minimum of the load against the
-    crossing x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends
+    crossing x. Arguments and errors are the same as in :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends
     before.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)

@@ -64,7 +64,7 @@ INSET = 1e-6
 
 @dataclass(frozen=True)
 class ParameterPlane:
-    """A rectangle in two parameters of a disc; all others are those of ``disc``.
+    """A rectangle in two parameters of a disc; ``disc`` contains all other parameters.
 
     ``names`` are two parameters except contact, offset and nonlinear support, with ranges from ``lower`` to
     ``upper``. Raises ``ValueError`` if a name is not allowed, a range is empty or includes parameters without a whirl

@@ -31,7 +31,7 @@ Rates = Callable[[FloatArray], FloatArray]
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
     """Return Re c in 1/s of a whirl without offset and with a pair of eigenvalues on the imaginary axis.
 
-    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. ``state``, shape (6,),
+    a is the amplitude of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. ``state``, shape (6,),
     lies on the whirl, with the centre on the x axis.
 
     Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, or the disc rests on single

@@ -75,9 +75,9 @@ def equilibrium_eigenvalues(
 
     Friction resists only the radial velocity of a pin, like a damper μN/(|ω|ρ*). So its eigenvalues are the roots of
     mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and (3) is always stable if β > 0, as the paper says below (5). For
-    a disc, and on a nonlinear support, they are those of :func:`jacobian_without_angle`.
+    a disc, and on a nonlinear support, they belong to :func:`jacobian_without_angle`.
 
-    ``state``, shape (6,), is that of a disc with its centre at rest, see
+    ``state``, shape (6,), describes a disc with its centre at rest, see
     :func:`reference_model.self_centred_equilibria`. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a pin
     has no such equilibrium or has it on the axis, where it does not slide.
     """
@@ -113,7 +113,7 @@ def turning_frame_jacobian(
     The unknowns are position in m and absolute velocity in m/s, in components along the turning axes, and the spin of
     a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v. ``state`` of a
     disc lies on the whirl, with the centre on the x axis. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a
-    pin has no whirl or the state cannot lie on one.
+    pin has no whirl or the state cannot lie on a whirl.
     """
     state = _state_on_whirl(system, state)
     jacobian = jacobian_without_angle(system, state, contact)
@@ -128,7 +128,7 @@ def whirl_eigenvalues(
     """Return the eigenvalues of a whirl in the frame that turns with it: an exact zero, then three or four more.
 
     The zero belongs to the free phase. For a pin the others are the roots of the corrected (13). Parameters and
-    errors are those of :func:`turning_frame_jacobian`.
+    errors are the same as in :func:`turning_frame_jacobian`.
     """
     state = _state_on_whirl(system, state)
     jacobian = turning_frame_jacobian(system, state, contact)

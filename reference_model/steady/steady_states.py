@@ -122,7 +122,7 @@ def self_centred_equilibria(
 ) -> tuple[SelfCentredEquilibrium, ...]:
     """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
-    A pin has at most one, that of (3), but none
+    A pin has at most one equilibrium, (3), but none
 
     - if μN >= C·|X0|; at equality it would stick on the axis;
     - if ω = 0 with friction, because it sticks;
@@ -167,7 +167,7 @@ def whirls(system: DiscOnDisc, contact: IsotropicContact | None = None) -> tuple
 def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whirl, ...]:
     """Return every motion of ``system`` on a circle about the axis with permanent slip; X0 = 0 only.
 
-    A pin has at most one, that of (11), but none
+    A pin has at most one whirl, (11), but none
 
     - if |ω| <= k: it would overtake the disc, and friction would brake it;
     - if β = 0: with friction nothing limits the radius, and without friction every radius is possible;
@@ -180,7 +180,7 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     only if the disc turns faster. A disc's friction acts only partly along the circle, so it may whirl where a pin
     sticks.
 
-    Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
+    Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are the same as in
     :func:`self_centred_equilibria`.
     """
     _require_centred(system)
@@ -248,9 +248,9 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
-    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or of a fold, where two
-    whirls meet; ``friction_force`` does not matter. Raises ``ValueError`` if whirls do not exist at
-    any load, or if the support is not linear, where whirls may begin and end at several loads.
+    It belongs to a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or to a fold, where two
+    whirls meet; ``friction_force`` does not matter. Raises ``ValueError`` if whirls do not exist at any load, or if
+    the support is not linear, where whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
     _require_centred(disc)

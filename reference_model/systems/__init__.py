@@ -122,8 +122,8 @@ class DiscOnDisc(_SupportedMass):
     """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
     A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
-    rad, vx, vy in m/s and the spin in rad/s. Errors and other parameters are those of :class:`PinOnDisc`, with μN of
-    the whole ring and ω of the master disc.
+    rad, vx, vy in m/s and the spin in rad/s. Errors and other parameters are the same as in :class:`PinOnDisc`, with
+    μN of the whole ring and ω of the master disc.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ class StepCount:
 
 @dataclass(frozen=True)
 class Phase:
-    """A time span of slip, stick or pivoting, which ends where the next one starts.
+    """A time span of slip, stick or pivoting, which ends where the next span starts.
 
     ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about a resting contact point.
     """
@@ -73,7 +73,7 @@ class Phase:
 
 
 def phases_of(begun: Sequence[tuple[Kind, float, FloatArray]], end: float) -> tuple[Phase, ...]:
-    """Return the phases for their kinds, starts in s and first states; the last one lasts until ``end``."""
+    """Return the phases for their kinds, starts in s and first states; the last phase lasts until ``end``."""
     ends = [*(start for _, start, _ in begun[1:]), end]
     return tuple(
         Phase(kind, start, until, state) for (kind, start, state), until in zip(begun, ends, strict=True)
@@ -84,8 +84,8 @@ def phases_of(begun: Sequence[tuple[Kind, float, FloatArray]], end: float) -> tu
 class Solution:
     """How a trajectory was computed.
 
-    ``evaluations`` counts those of the equations of motion, ``steps`` the accepted ones, and ``wall_time`` is in s.
-    ``regularisation`` is the slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
+    ``evaluations`` counts evaluations of the equations of motion, ``steps`` accepted steps, and ``wall_time`` is in
+    s. ``regularisation`` is the slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
     """
 
     method: str
@@ -159,7 +159,7 @@ class Trajectory:
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the path in the plane and radius, slip speed and spin over time; stick phases are shaded.
 
-        ``figure`` is the matplotlib figure, None for a new one. Raises ``ModuleNotFoundError`` without matplotlib.
+        ``figure`` is the matplotlib figure, None for a new figure. Raises ``ModuleNotFoundError`` without matplotlib.
         """
         from reference_model.trajectory.pictures import figure_of
 

@@ -21,7 +21,7 @@ COARSE = 65
 MOST_CHUNK, MOST_SAMPLES, MOST_AT_A_VALUE = 10_000_000, 2**31, 2**20
 
 STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
-"""Default initial states, those of ``simulate``."""
+"""Default initial states, as in ``simulate``."""
 
 UNTIL, UNTIL_ON_POINTS = 12000.0, 1200.0
 """Default of ``--until`` in s. Only then do modulated motions near the Hopf curve of Fig. 11 differ from whirls. On

@@ -74,7 +74,7 @@ class Slides(NamedTuple):
 
 
 class Term(NamedTuple):
-    """A force in N, as real factors times ``bases``, and the sentence for the factors.
+    """A force in N, the sum of ``bases`` times real factors, and the sentence that describes the factors.
 
     Two factors are the parts along x and y of a vector.
     """

@@ -46,8 +46,8 @@ UNITS = {
 class Output:
     """Ratios that are 1 in any consistent answer, one column for each coordinate, and their errors.
 
-    The first row contains the velocities just after the start over the given ones, and the others the ways over the
-    integrals of the velocity, from each of ``TIMES`` to the next.
+    The first row contains the velocities just after the start, divided by the given velocities. The other rows
+    contain the distances from each of ``TIMES`` to the next, divided by the integrals of the velocity.
     """
 
     ratios: FloatArray  # (5, 2) for a block, (5, 3) for a disc
@@ -68,7 +68,7 @@ class Flaw(NamedTuple):
 
 
 def output(engine: Engine) -> Output:
-    """Return how the states of a free body contradict each other, and a batch the same motions one by one."""
+    """Return how the states of a free body contradict each other, and how a batch contradicts single motions."""
     system: PinOnDisc | DiscOnDisc = SMOOTH
     start: tuple[float, ...] = (*PLACE, *VELOCITY)
     for points in (None, 6):
@@ -76,7 +76,7 @@ def output(engine: Engine) -> Output:
         if engine.simulates(disc):
             system, start = disc, (*PLACE, 0.0, *VELOCITY, SPIN)
     ladder = Ladder.of(engine, lambda tolerance: _ratios(engine, system, start, tolerance))
-    # states may be those of the nearest steps
+    # the states may belong to the nearest steps
     noise = (DISTINCT * engine.noise + (engine.step or 0.0)) / float(np.min(np.diff(TIMES)))
     order, difference = _batch(engine, system, start)
     changes = np.max(np.abs(np.diff(ladder.values[-3:], axis=0)), axis=0)

@@ -34,7 +34,7 @@ class Patch:
 
     ``motions`` contains slip speed and rim speed in m/s, and the angle, at the last three ``TIMES``, shape
     (k, 8, 3, 3). ``wrenches`` contains the mean force against the slip over μN and the moment over μNR, shape
-    (k, 8, 2). ``shaft`` is the angular acceleration by the shaft over the exact one.
+    (k, 8, 2). ``shaft`` is the angular acceleration by the shaft, divided by the exact acceleration.
     """
 
     kinds: tuple[str, ...]
@@ -181,7 +181,7 @@ def _laws(right: Contact) -> list[Law]:
 def law_of(found: Patch, strength: float) -> tuple[str, bool]:
     """Return the law of discs in words, and whether it is right; ``strength`` is the factor of μ of blocks.
 
-    The law is that of the first wrong kind, and lists those that explain force and moment, or the closest.
+    The law of the first wrong kind counts; it lists the laws that explain force and moment, or the closest law.
     """
     allowed, right = max(CLOSE, found.error), ""
     for kind, motions, measured in zip(found.kinds, found.motions, found.wrenches, strict=True):
@@ -191,7 +191,7 @@ def law_of(found: Patch, strength: float) -> tuple[str, bool]:
         if own > allowed:
             fits = [(*_fit(law, motions, wrenches), law.bounds is None) for law in _laws(exact)]
             close = [one for one in fits if one[0] <= allowed]
-            certain = [one for one in close if one[2]] or close  # those without a free number explain more
+            certain = [one for one in close if one[2]] or close  # laws without a free number explain more
             nearest, closest, _ = min(fits)
             rest = f"follows no known law: the closest {closest}, up to {error_text(100.0 * nearest)} % of μN"
             said = " or ".join(text for _, text, _ in certain) or rest

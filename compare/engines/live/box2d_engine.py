@@ -17,7 +17,7 @@ from compare.engines.live.setting import Setting, TopDown, inertia_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS, RECOMMENDED = 50, (8, 3)
-"""Velocity iterations, and those that Box2D's manual recommends, with its position iterations."""
+"""Velocity iterations; then the velocity and position iterations that Box2D's manual recommends."""
 
 
 class _World(TopDown):

@@ -1,11 +1,12 @@
 """Bullet as an engine: with its friction cone on and off, and with our law as a user force.
 
 Written for PyBullet 3.2.7, in double precision. The pin or disc is a multibody on two prismatic joints; a disc also
-has a revolute one. The plate is too heavy to be slowed.
+has a revolute joint. The plate is too heavy to be slowed.
 
-- Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. As shipped,
-  only the motors are off.
-- The friction coefficient is the product of both bodies'. Slop and the solver's residual threshold are 0.
+- Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. With the
+  settings as shipped, only the motors are off.
+- The friction coefficient is the product of the coefficients of both bodies. Slop and the solver's residual threshold
+  are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
 Friction opposes the slip at the end of a step. With the cone off, it is bounded per world axis. With the cone on,
@@ -30,7 +31,8 @@ from compare.engines.live.setting import (
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50
-"""Solver iterations, the default. Ten change discs that stick on six points by less than 0.1 % of their error."""
+"""Solver iterations, the default. Ten iterations change discs that stick on six points by less than 0.1 % of their
+error."""
 
 
 class _World(Model):

@@ -4,7 +4,8 @@ Measured with 6.20.0. The pin or disc is a body on a planar joint. The motion of
 
 - A step is semi-implicit, of order 1. Implicit springs of joints would damp like C·h, so the support's spring is a
   force set before each step, with a quarter of the error. The dampers are the joint's.
-- By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. Both are off.
+- By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. We turn both
+  off.
 - Dantzig's solver and projected Gauss–Seidel bound friction on each of two world axes; the others use the cone.
 - At a solver tolerance of 1e-12 of an impulse, rounding can prevent convergence.
 """

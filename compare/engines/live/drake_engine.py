@@ -7,9 +7,9 @@ motion.
 - A step of the discrete solvers is semi-implicit, of order 1. For integrators, friction grows smoothly up to a slip
   of ε and is Coulomb's beyond.
 - ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has its own, 5e-4·h·μN/m as measured in stick.
-- The convex solvers stop at a residual of 1e-6 of the total momentum. A heavy master would hide all friction, so
-  theirs is light and driven by its motor's gain or, because cenic ignores that, by a torque through a stiff damper.
-  Below h = 2e-3/rate errors grow.
+- The convex solvers stop at a residual of 1e-6 of the total momentum. A heavy master would hide all friction, so for
+  the integrators it is light and driven by the gain of its motor. cenic ignores this gain, so a torque through a
+  stiff damper drives its master. Below h = 2e-3/rate errors grow.
 - On a half-space, Drake crashes with twenty or more spheres, so the plate is a box.
 - Drake's springs between bodies act along a line, so the support is a bushing.
 """

@@ -75,7 +75,7 @@ def simulate(
 
 
 def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
-    """Return the program's greeting; raise ``ValueError`` without one."""
+    """Return the program's greeting; raise ``ValueError`` if it is missing."""
     check_command(command, folder)
     try:
         return conversation_with(command, folder).greeting
@@ -106,7 +106,7 @@ _OPEN: dict[tuple[int, tuple[str, ...], str], Conversation] = {}
 
 
 def conversation_with(command: tuple[str, ...], folder: str) -> Conversation:
-    """Return this process's conversation with the program; start a new one if the last has ended."""
+    """Return this process's conversation with the program; start a new conversation if the last has ended."""
     key = os.getpid(), command, folder  # a forked process needs its own
     found = _OPEN.get(key)
     if found is None or found.over:
@@ -173,7 +173,7 @@ class Conversation:
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(patience)
         self._kill()
-        PROGRAMS.discard(self._process.pid)  # its time counts as that of an ended process from now on
+        PROGRAMS.discard(self._process.pid)  # from now on, its time counts as the time of an ended process
         self._process.wait()
         self._output.close()
         if self._guard is not None:
@@ -188,7 +188,7 @@ class Conversation:
                 self._process.kill()
 
     def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
-        """Write ``line`` and return the next line; end the program unless it writes exactly one."""
+        """Write ``line`` and return the next line; end the program unless it writes exactly one line."""
         here, late = threading.Event(), threading.Event()
         began, before = time.monotonic(), processor_time_of(self._process.pid)
 
@@ -245,7 +245,7 @@ def _environment() -> dict[str, str]:
 
 
 def _guard_of(group: int) -> subprocess.Popen[bytes]:
-    """Start a process that kills those of ``group`` after the end of this process."""
+    """Start a process that kills the processes of ``group`` after the end of this process."""
     return subprocess.Popen(
         ("/bin/sh", "-c", END_WITH_US, str(group)),
         stdin=subprocess.PIPE,
@@ -285,7 +285,7 @@ class _LastWords:
         self._reader.start()
 
     def text(self, *, ended: bool) -> str:
-        """Return the last lines as one; if the program has ``ended``, wait for the rest."""
+        """Return the last lines as one line; if the program has ``ended``, wait for the rest."""
         if ended:
             self._reader.join(FAREWELL)  # other processes may hold the stream open
         lines = self._kept.decode(errors="replace").split("\n")

@@ -1,8 +1,8 @@
 """Stick phases from a model's own record of its last events.
 
 The outputs ``NAMES`` count sticks and releases and give their last times and the position of the last stick.
-``NAMES_OF_POINTS`` give the number of resting points, how often it changed, and time and state of the last change. A
-step with several events of a kind is rejected and halved.
+``NAMES_OF_POINTS`` give the number of resting points, how often it changed, and time and state of the last change.
+The adapter rejects and halves a step with several events of a kind.
 """
 
 import cmath
@@ -27,7 +27,7 @@ Kind = Literal["slip", "pivot", "stick"]
 
 
 def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
-    """Return whether a model reports stick; one with ``exact`` off by default creeps and has no events."""
+    """Return whether a model reports stick; a model with ``exact`` off by default creeps and has no events."""
     exact = variables.get("exact")
     return (
         set(NAMES) <= set(variables)

@@ -83,7 +83,7 @@ STUDY = Study.beside(
     "Motions that start near the axis return to it if μN is below the onset, and leave it above",
     equation="(19)–(21)",
     note=f"Without motions within {MARGIN:g} of the onset's μN, and without motions that stick. By the compiled "
-    f"ensemble until t = {UNTIL:g} s, which may leave one in a thousand undecided.",
+    f"ensemble until t = {UNTIL:g} s, which may leave one disc in a thousand undecided.",
     basis="reference",
     swept=("damping", "shaft_damping"),
 )

@@ -17,7 +17,7 @@ from reference_model.systems import FloatArray
 ROTOR, PLANAR = "rotor", "planar"
 SPATIAL = {"rotation vector": "NodeRigidBodyRotVecLG", "Tait-Bryan": "NodeRigidBodyRxyz"}
 KINDS = (ROTOR, PLANAR, *SPATIAL)
-"""Kinds of nodes. The bearing of a rotor absorbs every moment except that about its axis."""
+"""Kinds of nodes. The bearing of a rotor absorbs every moment except the moment about its axis."""
 
 DRIVETRAINS = tuple(
     (engine, KINDS[1 + (i + j) % 3], vehicle)

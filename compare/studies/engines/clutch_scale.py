@@ -51,7 +51,7 @@ UNTIL, SAMPLES = 240.0, 481
 """Duration in s until this pin rests, and number of samples."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
-"""Fig. 6 at 0.12 N."""
+"""The pin of Fig. 6 at 0.12 N."""
 
 REST_OF_DISC = 40.0
 """Duration in s for a disc of Fig. 8 that starts in the equilibrium of (19) and (20)."""
@@ -63,7 +63,7 @@ CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
 """Duration in s of this motion, and number of samples."""
 
 VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
-"""vx(0) in m/s; pins come to rest or reach the whirl."""
+"""Initial vx in m/s of pins that come to rest or reach the whirl."""
 
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
@@ -194,8 +194,8 @@ def ends(engine: Engine) -> Measured:
     equation="(17)",
     kind="trajectory",
     resolution=1e-5,
-    note="Predicted: the periodic orbit of the reference, by shooting at the paper's scale. Its accuracy of 1e-9 of "
-    "X0 is part of the error.",
+    note="Predicted: the periodic orbit of the reference, by shooting at the paper's scale. The accuracy of "
+    "this orbit, 1e-9 of X0, is part of the error.",
 )
 def whirls(engine: Engine) -> Measured:
     orbit = exact_whirl()
@@ -241,7 +241,8 @@ def spins(engine: Engine) -> Measured:
     kind="trajectory",
     unit="m, rad, m/s, rad/s",
     resolution=1e-6,
-    note="In the units of the paper's scale. Predicted: SciPy's integration of (19) as printed, at the paper's "
+    note="Measured in the units of the paper's scale. Predicted: SciPy's integration of (19) as printed, at "
+    "the paper's "
     "scale.",
     each=DISCS,
 )

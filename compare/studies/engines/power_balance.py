@@ -31,8 +31,8 @@ SAMPLE_DISTANCE, FINE = 0.02, 0.2 * 0.02
 CLOSER, NUMBER, ROUGH = 0.8, 40, 1e-7
 """More samples near the bounds of phases, where integrands are not smooth.
 
-Their distances from a bound are those of a geometric series with this ratio and number of terms, from the sampling
-interval on. The bounds are those of the reference at the tolerance ``ROUGH``, because other engines' differ by less.
+Their distances from a bound form a geometric series with this ratio and number of terms, from the sampling interval
+on. The reference supplies the bounds at the tolerance ``ROUGH``; the bounds of other engines differ by less.
 """
 
 RESOLUTION = 1e-8
@@ -209,7 +209,7 @@ def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 @functools.cache
 def _times(motion: Motion) -> FloatArray:
-    """Return an odd number of times (s), so every second sample includes the last one."""
+    """Return an odd number of times (s), so every second sample includes the last sample."""
     evenly = np.linspace(0.0, motion.until, 2 * round(motion.until / (2.0 * motion.step)) + 1)
     rough = simulate(motion.system, motion.start, evenly[[0, -1]], tolerance=ROUGH)
     near = motion.step * CLOSER ** np.arange(NUMBER)

@@ -66,7 +66,7 @@ def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
 
 
 def along_and_across(values: Sequence[complex]) -> list[complex]:
-    """Return the eigenvalues of motion along the circumference, those of the support alone, then the others."""
+    """Return the eigenvalues of motion along the circumference, damped by the support alone, then the others."""
     m, beta, C = PIN.mass, PIN.damping, PIN.stiffness
     along = sorted(values, key=lambda value: abs(m * value**2 + beta * value + C))
     return [
@@ -100,8 +100,9 @@ DECAYS = "The position of rest is stable at every friction force within (5)"
     equation="(3)",
     unit="m",
     resolution=1e-9 * PIN.offset,
-    note=f"Starts at rest at x = {START[0]:g} m, y = {START[1]:g} m; position after {DURATION:g} s. Numerical error: "
-    "the tolerance, the change at a smaller one, and the remaining transient according to its change in the last "
+    note=f"Starts at rest at x = {START[0]:g} m, y = {START[1]:g} m; position after {DURATION:g} s. Numerical "
+    f"error: the tolerance, the change at a smaller tolerance, and the remaining transient, judged by its "
+    f"change in the last "
     f"{DELAY:g} s.",
     swept=("friction_force",),
 )
@@ -243,10 +244,11 @@ def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 @STUDY.claim(
     DECAYS,
     equation="(5)",
-    note=f"Does each eigenvalue of the linearised (1) decay? Grid: μN/(C·X0) = {GRID_SHARES[0]:g} … "
+    note=f"Does each mode of the linearised (1) decay? Grid: μN/(C·X0) = {GRID_SHARES[0]:g} … "
     f"{GRID_SHARES[-1]:g}, ω = {GRID_SPEEDS[0]:g} … {GRID_SPEEDS[-1]:g} rad/s, β = {GRID_DAMPINGS[0]:g} … "
-    f"{GRID_DAMPINGS[-1]:g} N s/m; rounding may leave one in a thousand undecided. In closed form they are the roots "
-    "of mλ² + βλ + C and of mλ² + (β + μN/(ωρ*))λ + C, which all decay if β > 0.",
+    f"{GRID_DAMPINGS[-1]:g} N s/m; rounding may leave one point in a thousand undecided. In closed form they "
+    f"are the roots "
+    "of mλ² + βλ + C and of mλ² + (β + μN/(ωρ*))λ + C, which all have negative real parts if β > 0.",
     swept=("friction_force", "disc_speed", "damping"),
 )
 def stable_on_a_grid() -> Measured:

@@ -23,7 +23,7 @@ SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0
 CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # ω in rad/s
 
 OFFSETS = (0.02, 0.01, 0.005)
-"""X0 in m, each half of the previous one and far below the whirl's radius of 1.2 m."""
+"""X0 in m, each half of the previous value and far below the whirl's radius of 1.2 m."""
 
 SHIFT_TOLERANCE = 1e3 * WORKING  # loose, because (18) has an error of a few per cent
 

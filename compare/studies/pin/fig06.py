@@ -210,7 +210,8 @@ def cycle_exists(engine: Engine) -> Measured:
     resolution=5e-3,
     note=f"Two pins start with the cycle's state enlarged and reduced by {CYCLE_DEVIATION:g}. Measured: the "
     f"difference of the radii at which they stick, from one stick phase to the next, over {CYCLE_TURNS} turns. "
-    "Predicted: the largest multiplier of the reference's orbit except that of the phase. Error: tolerance, and "
+    "Predicted: the largest multiplier of the reference's orbit except the multiplier of the phase. Error: "
+    "tolerance, and "
     "twice the deviation.",
 )
 def cycle_attracts(engine: Engine) -> Measured:

@@ -169,7 +169,7 @@ def orbit(engine: Engine) -> Measured:
     "The errors of harmonic balance in radius and frequency of the whirl fall like X0²",
     kind="order",
     resolution=0.1,
-    note="This is not in the paper. The mean and one harmonic balance those of the cubic force and of friction. "
+    note="This is not in the paper. The mean and one harmonic of the motion balance the cubic force and friction. "
     f"Measured: exponents of their errors at X0 = {OFFSETS[0]:g} … {OFFSETS[-1]:g} m. The next term is "
     "of the order X0⁴, because an offset to the other side leads to the same orbit. Without offset, the balance is "
     "exact.",
@@ -266,7 +266,7 @@ def rests(engine: Engine) -> Measured:
     note="According to the paper, nonlinear radial forces usually limit the amplitude. The pin sticks when its "
     "circle turns with the disc, up to an effect of the holding friction of the order μN. Measured: value at 0 of "
     f"the parabola through the radii for μN = {', '.join(f'{load:g}' for load in GROWING_LOADS)} N. "
-    f"Error: its change for the straight line through the last two. With {LAWS}.",
+    f"Error: the change with the straight line through the last two radii. With {LAWS}.",
     swept=("friction_force",),
 )
 def growth_ends(engine: Engine) -> Measured:

@@ -101,7 +101,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 # --- A full disc under uniform pressure
 
 EPSILON = 100.0
-"""Regularisation ε of Exudyn's part over tolerance and speed; its effect on a sliding disc is of order ε²."""
+"""Regularisation ε of Exudyn's part, divided by tolerance and speed; its effect on a sliding disc is of order ε²."""
 
 
 def by_contact_law(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
@@ -192,11 +192,12 @@ def seen(states: FloatArray) -> FloatArray:
 
 
 @STUDY.claim(
-    "Friction acts on a sliding ring with μN, on a spinning ring with μNR, and with 2/π of each if it does both",
+    "Friction is μN on a sliding ring, μNR on a spinning ring, and 2/π of both if the ring slides and spins",
     equation="(19), (20)",
     unit="m, m/s",
     resolution=1e-6,
-    note="Uniform deceleration to rest. A ring that does both has J = mR², and its rim is as fast as its centre.",
+    note="Uniform deceleration to rest. A ring that slides and spins has J = mR², and its rim is as fast as "
+    "its centre.",
     swept=("polar_inertia",),
 )
 def on_ring(engine: Engine) -> Measured:
@@ -204,7 +205,7 @@ def on_ring(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Friction acts on a sliding disc on {} points with μN, and on a spinning one with μNR",
+    "Friction is μN on a sliding disc on {} points, and μNR on a spinning disc",
     equation="(19), (21)",
     unit="m, m/s",
     resolution=1e-6,
@@ -217,12 +218,13 @@ def on_points(engine: Engine, points: int) -> Measured:
 
 
 @STUDY.claim(
-    "Friction acts on a sliding full disc with μN, on a spinning one with ⅔·μNR, with less of each if it does both",
+    "Friction is μN on a sliding full disc, ⅔·μNR on a spinning one, and less of both if the disc does both",
     equation="(19), (20)",
     unit="m, m/s",
     resolution=1e-6,
     note="Contact under uniform pressure within R. Uniform deceleration, sampled until nine tenths of the time to "
-    "rest. A disc that does both has J = mR²/3, and its rim is as fast as its centre; the force is then 8/3π·μN and "
+    "rest. A disc that slides and spins has J = mR²/3, and its rim is as fast as its centre; the force is "
+    "then 8/3π·μN and "
     "the moment 8/9π·μNR.",
     swept=("polar_inertia",),
 )

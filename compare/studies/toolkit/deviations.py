@@ -44,7 +44,7 @@ def settled(
 ) -> Settled:
     """Return the final value of ``track(times, tolerance)``, shape (n, ...), in a simulation of ``duration`` s.
 
-    ``period`` (s) is that of the transient; ``remaining_transient`` explains ``delay`` and ``rate``.
+    ``period`` (s) is the period of the transient; ``remaining_transient`` explains ``delay`` and ``rate``.
     """
     times = [0.0, *np.linspace(duration - delay - period, duration - delay, 13), duration]
     found = refined(lambda asked: track(times, asked), tolerance)

@@ -50,7 +50,7 @@ def extremes(values: ArrayLike, *, periodic: bool = False) -> Measurement:
     """Return the smallest and the largest value of a curve between its equidistant samples, and their errors, (2,).
 
     The curve near an extreme is the polynomial through ``REACH`` samples on either side. The error is the change with
-    half as many. The first sample of a ``periodic`` curve is also its last one.
+    half as many samples. The first sample of a ``periodic`` curve is also its last sample.
     """
     values = np.asarray(values, dtype=float)
     if periodic:

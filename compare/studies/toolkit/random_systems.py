@@ -1,6 +1,6 @@
 """Random pins, discs and initial states.
 
-Sizes, rates and ratios have log-uniform distributions; signs and directions have uniform ones.
+Sizes, rates and ratios have log-uniform distributions; signs and directions have uniform distributions.
 """
 
 import cmath
@@ -29,7 +29,7 @@ def vector(random: Generator, size: float) -> complex:
 def state_of(
     place: complex, velocity: complex, *, angle: float = 0.0, spin: float | None = None
 ) -> FloatArray:
-    """Return the state of a pin, shape (4,), or with a ``spin`` that of a disc, shape (6,)."""
+    """Return the state of a pin, shape (4,), or with a ``spin`` the state of a disc, shape (6,)."""
     if spin is None:
         return np.array([place.real, place.imag, velocity.real, velocity.imag])
     return np.array([place.real, place.imag, angle, velocity.real, velocity.imag, spin])

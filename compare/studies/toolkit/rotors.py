@@ -12,7 +12,7 @@ NUMERICAL_DAMPING = 0.8
 
 
 class Rotors:
-    """Rotors with inertias (kg m²), initial speeds (rad/s) and the initial angle (rad) of the last one."""
+    """Rotors with inertias (kg m²), initial speeds (rad/s) and the initial angle (rad) of the last rotor."""
 
     def __init__(self, inertias: Sequence[float], speeds: Sequence[float], last_angle: float = 0.0) -> None:
         import exudyn as exu  # deferred: the command line must start without it

@@ -1,7 +1,8 @@
 """Exact motion of rotors that clutches with Coulomb friction couple, in a row or in any other way.
 
 Torques and capacities are piecewise harmonic, so the motion between events has a closed form. After the end of a
-slip, or a torque beyond a clutch's capacity, a search over all combinations of modes finds the consistent one.
+slip, or a torque beyond a clutch's capacity, a search over all combinations of modes finds the consistent
+combination.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ Pieces = Sequence[tuple[float, Harmonic]]
 class Chain:
     """Rotors with external torques, and the clutches between them.
 
-    A slipping clutch transmits its capacity, and a stuck one up to ``static_ratio`` times as much; 0 opens it. The
+    A slipping clutch transmits its capacity, and a stuck clutch up to ``static_ratio`` times as much; 0 opens it. The
     ``inertias`` (kg m²) are numbers, or the mass matrix of coordinates that gears couple. A row of ``slips`` maps the
     speeds to the slip of one clutch; by default the clutches connect neighbours. The rows must be independent.
     """

@@ -22,7 +22,7 @@ WAIT = 3.0  # time limit in s for a scheduler to answer and to have a worker
 IN_FLIGHT = 3  # submitted tasks per thread: enough to keep it busy, and few to lose
 COUNT_INTERVAL = 1.0
 POLL = 0.01
-FROZEN, LATE = 60.0, 3.0  # a task is late after this time in s, and after this multiple of the longest one
+FROZEN, LATE = 60.0, 3.0  # a task is late after this time in s, and after this multiple of the longest task
 AT_ONCE = 2  # simultaneous tasks in this process, each on all cores
 
 
@@ -49,7 +49,7 @@ class InProcess:
         running: deque[tuple[Hashable, Future[Any]]] = deque()
         with Threads(AT_ONCE) as pool:
             for task in tasks:
-                if not task.compiled:  # two of them would wait for the interpreter lock
+                if not task.compiled:  # two such tasks would wait for the interpreter lock
                     yield task.key, task.function(*task.arguments)
                     continue
                 running.append((task.key, pool.submit(task.function, *task.arguments)))
@@ -100,7 +100,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             self._client.close()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results as they become available; another worker repeats tasks of a lost one."""
+        """Yield keys and results as they become available; another worker repeats tasks of a lost worker."""
         sent: dict[str, tuple[Task, float]] = {}
         waiting, longest = iter(tasks), 0.0
         running = self._dask.as_completed(with_results=True, loop=self._client.loop)

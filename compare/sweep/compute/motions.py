@@ -12,7 +12,7 @@ from reference_model.systems import FloatArray
 GAP = 0.05
 """Relative gap in the largest radius between two motions; a single motion scatters by less."""
 
-JUMP = 0.3  # largest relative difference between the radii of a motion and those of its extrapolated branch
+JUMP = 0.3  # largest relative difference between the radii of a motion and of its extrapolated branch
 
 
 class Motion(NamedTuple):
@@ -25,7 +25,7 @@ class Motion(NamedTuple):
 
 
 def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motion]:
-    """Return the motions that starts end in, without undecided ones; all arguments have shape (n,).
+    """Return the motions that starts end in, without undecided starts; all arguments have shape (n,).
 
     A gap between radii separates motions of one kind, except stuck motions, because a pin may stick anywhere.
     """
@@ -61,7 +61,7 @@ def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> 
     """Return branches of motions; each maps indices of values to motions.
 
     A branch continues with the motion of its kind nearest to a linear extrapolation; nearest pairs are matched first.
-    A motion farther than ``JUMP`` from all branches begins a new one.
+    A motion farther than ``JUMP`` from all branches begins a new branch.
     """
     branches: list[dict[int, One]] = []
     for i, here in enumerate(found):

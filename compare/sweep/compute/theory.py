@@ -18,7 +18,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 # --- Steady and periodic motions along one parameter
 
 SAMPLES = 64
-"""Number of samples of an orbit; the radius of a nearly circular one varies by 1e-3 between two."""
+"""Number of samples of an orbit; the radius of a nearly circular orbit varies by 1e-3 between two samples."""
 
 
 def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
@@ -27,7 +27,7 @@ def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
 
 
 def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
-    """Yield the motions at each value; a whirl with an offset continues the previous one."""
+    """Yield the motions at each value; a whirl with an offset continues the previous whirl."""
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
         change: dict[str, Any] = {plan.x.name: value}
@@ -48,7 +48,7 @@ def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
 
 
 def _orbit(system: System, before: Orbit | None, tolerance: float) -> Orbit | None:
-    """Return the whirl by shooting from the previous one, or from the circle without offset."""
+    """Return the whirl by shooting from the previous whirl, or from the circle without offset."""
     for guess in (before, None) if before is not None else (None,):
         with suppress(ValueError, RuntimeError):  # no whirl exists, or shooting fails
             return whirl_orbit(system, guess=guess, tolerance=tolerance, samples=SAMPLES)

@@ -93,7 +93,7 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
 WATCHED = 0.5  # share of a trajectory that decides the end state
 
 SAMPLES_PER_TURN = 64
-"""Samples per turn in the last part; earlier ones only give the extent of the motion."""
+"""Samples per turn in the last part; earlier samples only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
 AT_REST = 0.02  # largest distance of a resting centre from its last position, relative to the motion
@@ -204,7 +204,7 @@ def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
-    """Return times and radii of passages of the positive x-axis with the master disc, by interpolation."""
+    """Return interpolated times and radii of crossings of the positive x-axis in the disc's direction."""
     x, y = trajectory.states.T[:2]
     y = math.copysign(1.0, trajectory.system.disc_speed) * y
     at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (x[1:] > 0.0) & (trajectory.times[:-1] >= since))

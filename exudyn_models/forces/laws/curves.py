@@ -11,7 +11,7 @@ import numpy as np
 from reference_model.systems import FloatArray, finite_numbers
 
 ROUNDING = 0.01
-"""Rounding of the edge of ``peak_over_sliding``, which limits its slope to 50 times that of a linear fall."""
+"""Rounding of the edge of ``peak_over_sliding``, which limits its slope to 50 times the slope of a linear fall."""
 
 
 def peak_over_sliding(share: float, static_ratio: float) -> float:
@@ -31,7 +31,7 @@ def peak_over_sliding(share: float, static_ratio: float) -> float:
 def curve_of_table(name: str, table: Any) -> Callable[[float], float]:
     """Return the coefficient as a function of the slip speed >= 0 (m/s), from rows of slip speed and coefficient.
 
-    The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
+    The coefficient is linear between the rows and beyond the last row, like Modelica's ``mu_pos``, but not below 0.
     Raises ``ValueError`` if the table is invalid.
     """
     rows = _checked_table(name, table)

@@ -18,7 +18,7 @@ ARGUMENTS = {"time": "s", "radius": "m", "slip_speed": "m/s", "relative_spin": "
 
 @dataclass(frozen=True, eq=False)
 class LawFunction:
-    """A coefficient or load that is a function of some ``arguments``; ``unit`` is that of its result.
+    """A coefficient or load that is a function of some ``arguments``; ``unit`` is the unit of its result.
 
     ``of_motion`` takes all ``ARGUMENTS``, and its result is not checked.
     """

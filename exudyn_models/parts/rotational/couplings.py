@@ -42,7 +42,7 @@ class RotorCoupling:
         - ``"mode"``: 0 locked, 1 or −1 slipping, or pressed, forward or backward, 2 open.
         - ``"power"``, ``"heat"``: lost power in W, and its integral since the start in J.
 
-        ``options`` are those of Exudyn's sensors. Raises ``ValueError`` for other quantities.
+        ``options`` are options of Exudyn's sensors. Raises ``ValueError`` for other quantities.
         """
         require_choice("quantity", quantity, get_args(Quantity))
         options = IN_MEMORY | options
@@ -87,7 +87,7 @@ class RotorCoupling:
 def rotors_of(mbs: Any, **rotors: Any) -> dict[str, Any]:
     """Return the nodes of rotors, by the names of arguments: nodes or objects on one axis; None is the ground.
 
-    Raises ``ValueError`` if one is not a rotor, or two are equal.
+    Raises ``ValueError`` if a node is not a rotor, or two are equal.
     """
     nodes: dict[str, Any] = {}
     for name, rotor in rotors.items():

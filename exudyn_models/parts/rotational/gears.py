@@ -69,9 +69,9 @@ def add_planetary(
 ) -> RotorCoupling:
     """Add a planetary gear, (1 + ratio)·ω_carrier = ω_sun + ratio·ω_ring; return its handle.
 
-    ``ratio`` > 0 is the number of teeth of the ring divided by that of the sun, and ``efficiency`` that of the gear
-    with a fixed carrier, as in ``add_gear``. Two of them make a Ravigneaux gear: give the second, whose ``ratio`` is
-    then negative, the same carrier and ring.
+    ``ratio`` > 0 is the number of teeth of the ring divided by the number of the sun. ``efficiency`` refers to the
+    gear with a fixed carrier, as in ``add_gear``. Two planetary gears make a Ravigneaux gear: give the second, whose
+    ``ratio`` is then negative, the same carrier and ring.
     """
     return add_gear(
         mbs, sun, ring, ratio=-finite_number("ratio", ratio), efficiency=efficiency, carrier=carrier
@@ -84,8 +84,8 @@ def add_differential(
     """Add a differential, ω_left + ω_right = 2·ω_case; return its handle.
 
     Friction between both sides has the limit ``preload`` in N m plus ``ramp`` times the moment on the case. Both are
-    >= 0; by default there is none. The sensor ``"moment"`` is half of the moment on the sides from the case. The
-    sensor ``"friction"`` acts forward on the left and backward on the right.
+    >= 0; by default there is no friction. The sensor ``"moment"`` is half of the moment on the sides from the case.
+    The sensor ``"friction"`` acts forward on the left and backward on the right.
     """
     nodes = list(rotors_of(mbs, case=case, left=left, right=right).values())
     for name, value in (("preload", preload), ("ramp", ramp)):

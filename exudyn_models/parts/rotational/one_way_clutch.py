@@ -10,8 +10,8 @@ def add_one_way_clutch(mbs: Any, driver: Any, driven: Any) -> RotorCoupling:
     """Add a one-way clutch to a model; return its handle.
 
     The ``driven`` rotor may be faster than the ``driver``, but never slower: the clutch then locks, with any positive
-    moment on the driven rotor. If it is slower at the start, an impact equalises both speeds. Rotors are those of
-    ``add_gear``; None is the ground.
+    moment on the driven rotor. If the driven rotor is slower at the start, an impact equalises both speeds. Rotors as
+    in ``add_gear``; None is the ground.
     """
     nodes = list(rotors_of(mbs, driver=driver, driven=driven).values())
     return add_coupling(mbs, nodes, OneWayLaw(weights_of(nodes, (-1.0, 1.0)), mbs.systemData))

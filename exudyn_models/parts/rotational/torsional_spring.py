@@ -14,7 +14,7 @@ def add_torsional_spring(
 
     Within the ``backlash``, a total clearance in rad > 0, it transmits nothing. Beyond it, spring (``stiffness`` > 0
     in N m/rad) and damper (``damping`` >= 0 in N m s/rad) push together, but never pull. ``solve_dynamic`` locates
-    each contact and separation with implicit solvers. Rotors are those of ``add_gear``.
+    each contact and separation with implicit solvers. Rotors as in ``add_gear``.
 
     Several springs between the same rotors make a clutch damper with stages. ``add_ring_friction`` adds hysteresis.
     """

@@ -139,13 +139,14 @@ def _null_space(rows: FloatArray) -> FloatArray:
 def linearise(mbs: Any) -> Linearisation:
     """Linearise a model about its present state, the end of its last run or its initial values.
 
-    Contacts with exact stick obey Coulomb's law at this state: locked ones are constraints, and sliding ones have the
-    slope of their friction. Contacts that are locked together share their load with the least largest share of
-    their static friction. Contacts between the same bodies then carry it in proportion to their static friction.
+    Contacts with exact stick obey Coulomb's law at this state: locked contacts are constraints, and sliding contacts
+    have the slope of their friction. Contacts that are locked together share their load so that the largest share of
+    their static friction is as small as possible. Contacts between the same bodies then carry it in proportion to
+    their static friction.
 
     Constraint forces count with the turn of their directions (a pendulum has the stiffness of its weight). Loads of
     user functions count as constant, and so do the directions of constraints that the present velocities turn.
-    First-order coordinates, such as those of heat and work, do not count. The model is assembled if necessary, and
+    First-order coordinates, such as heat and work, do not count. The model is assembled if necessary, and
     its state stays unchanged.
 
     Parameters
@@ -188,7 +189,7 @@ def linearise(mbs: Any) -> Linearisation:
 
 
 def _settle(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> list[list[StickingContact]]:
-    """Choose the modes of the contacts; return those that share a load."""
+    """Choose the modes of the contacts; return the contacts that share a load."""
     planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
     choice = ModeChoice(mbs, t, contacts, SlidingSteps(mbs, planar, STEP), STEP)
     choice.settle(t)

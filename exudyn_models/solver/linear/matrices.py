@@ -14,7 +14,8 @@ from reference_model.systems import FloatArray
 def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
     """Return A of d(x, ẋ)/dt = A·(x, ẋ) for small motions about the initial values of an assembled model.
 
-    x are its second-order coordinates, or those in ``own``. Loads that read the motion themselves count as constant.
+    x are its second-order coordinates, or only the coordinates in ``own``. Loads that read the motion themselves
+    count as constant.
     """
     mass, stiffness, damping = (part[own, own] for part in matrices_of_model(mbs))
     lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))

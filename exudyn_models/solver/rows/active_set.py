@@ -2,7 +2,7 @@
 
 The slip accelerations are r = g + A·f, and the moments of the meshes T = T₀ + W·f. Each row has r = 0 within its
 limits, or f at a limit against r. All rows change their states together until every row agrees with its state. If
-that takes too long, only the first one that disagrees changes, which always ends without meshes (K. G. Murty,
+that takes too long, only the first row that disagrees changes, which always ends without meshes (K. G. Murty,
 Mathematical Programming 7 (1974) 231). With meshes, random states follow.
 """
 
@@ -20,7 +20,7 @@ REGULAR = 1e-12
 """Relative compliance that makes the forces of redundant rows unique."""
 
 TOGETHER, MOST = 20, 4000
-"""Number of iterations that change all rows together from the same start, and of all."""
+"""Number of iterations that change all rows together from the same start, and number of all iterations."""
 
 CLOSE = 1e-11
 """Relative tolerance of forces, moments and slip accelerations."""
@@ -46,7 +46,7 @@ class LoadedRows:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the forces, shape (k,), and the slip accelerations that they leave.
 
-        ``limits``, shape (k, 2), are those of rows without a mesh against slip forward and backward.
+        ``limits``, shape (k, 2), limit the forces of rows without a mesh against slip forward and backward.
         """
         states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
         meshes = any(law is not None for law in self.laws)

@@ -31,7 +31,7 @@ ABOVE = 10.0
 """Ratio of the limit of a one-way clutch in its locked direction to the largest moment in the model."""
 
 ITERATIONS = 100
-"""Largest number of iterations for directions of power; each changes that of at least one mesh."""
+"""Largest number of iterations for directions of power; each changes the direction of at least one mesh."""
 
 SETTLED = 1e-13
 """Largest relative change of settled shares."""
@@ -93,7 +93,7 @@ class OneWayLaw(RotaryLaw):
     """A one-way clutch: the slip is free forward, and locked backward by any moment >= 0."""
 
     def limits(self, t: float) -> tuple[float, float]:
-        """Return the limits in N m; the second one exceeds all present moments."""
+        """Return the limits in N m; the second limit exceeds all present moments."""
         self.largest = max(self.largest, ABOVE * float(np.abs(self.multipliers()).max(initial=0.0)), 1.0)
         return FREE * self.largest, self.largest
 

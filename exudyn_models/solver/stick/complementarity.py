@@ -17,7 +17,7 @@ from exudyn_models.solver.rows.active_set import LoadedRows, unloaded
 from reference_model.systems import FloatArray
 
 SLIPS = 1e-8
-"""Smallest slip acceleration, relative to that of friction alone; less is a rounding error."""
+"""Smallest slip acceleration, relative to the acceleration by friction alone; less is a rounding error."""
 
 DEPENDENT = 1e-9
 """Part of a gradient of slip, relative to its length in the metric of the mass, that other contacts do not hold."""
@@ -74,7 +74,7 @@ class Sets:
     def _smooth_forces(
         self, to_rates: FloatArray, rates: FloatArray, limits: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Do as ``forces``, by Newton's method for ½·fᵀ·A·f + Σ s·√(P(r)² + ε²), whose ε falls to ``SMOOTH``.
+        """Return the same as ``forces``, by Newton's method for ½·fᵀ·A·f + Σ s·√(P(r)² + ε²), ε → ``SMOOTH``.
 
         Each iteration for a smaller ε starts from an extrapolation.
         """
@@ -138,9 +138,9 @@ def rest_or_slip(
     """Return the slip accelerations that begin at contacts without slip, shape (k,), 0 at rest.
 
     ``static`` and ``sliding``, shape (contacts, 2), are the largest forces against slip forward and backward. Static
-    friction acts on all contacts first; those that slip then have sliding friction, until no other slips. As few of
-    these as possible slip in the end, because others can rest if some do not. Slip accelerations below ``noise``
-    count as zero.
+    friction acts on all contacts first. Contacts that slip then have sliding friction, until no other contact slips.
+    As few contacts as possible slip in the end, because some can rest only if others slip. Slip accelerations below
+    ``noise`` count as zero.
     """
     count = len(sets.blocks)
     own = [np.linalg.norm(to_rates[rows, rows]) for rows in sets.blocks]
@@ -174,7 +174,7 @@ def rest_or_slip(
 
 
 def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[int], FloatArray]:
-    """Return the contacts that hold all others, and how the slips of the others depend on theirs.
+    """Return the contacts that hold all others, and how the other slips depend on their slips.
 
     ``gram``, shape (k, k), contains the products of the gradients of slip in the metric of the mass; joints reduce
     them. ``preferred`` contacts are chosen first. The second result, shape (k - chosen, chosen), has the rows of the

@@ -115,7 +115,7 @@ class Dynamics:
         return self.inverse[: self._size, self._size :] @ -slips
 
     def _coordinate_rates(self) -> FloatArray:
-        """Return the derivatives of the coordinates; those of rotation vectors are not the velocities."""
+        """Return the derivatives of the coordinates, which differ from the velocities for rotation vectors."""
         q, rates = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
         for places, reference in self._rotations:
             rates[places] = rate_of_rotation_vector(q[places] + reference, rates[places])
@@ -167,7 +167,7 @@ def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:
 
 
 def mobilities(mass: FloatArray) -> FloatArray:
-    """Return the inverse of each mass, shape (n,); the smallest mass takes the place of those that are zero."""
+    """Return the inverse of each mass, shape (n,); the smallest mass replaces masses that are zero."""
     masses = np.diag(mass)
     heavy = masses > LIGHT * np.abs(mass).max(axis=1, initial=0.0)
     return np.asarray(1.0 / np.where(heavy, masses, np.min(masses, where=heavy, initial=np.inf)))

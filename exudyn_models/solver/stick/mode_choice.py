@@ -38,7 +38,8 @@ SHRUNK = 1e-6
 """Relative reduction of the capacities of contacts that cannot hold their load any more, so some release."""
 
 NEAR = 0.02
-"""Unused share of capacity below which loads are computed again, because those of Exudyn's steps contain errors."""
+"""Unused share of capacity below which loads are computed again, because the loads in Exudyn's steps contain
+errors."""
 
 AHEAD = 1e-9
 """Share of a step to look ahead for the flank of a spring that is pressed."""
@@ -348,7 +349,7 @@ class ModeChoice:
         return np.minimum(margins, np.maximum(left, -1.0))  # finite where friction vanishes
 
     def _left(self, t: float) -> FloatArray:
-        """Return the unused shares of capacities, 1 in slip; that of a one-way clutch is continuous."""
+        """Return the unused shares of capacities, 1 in slip; for a one-way clutch this share is continuous."""
         left = np.ones(len(self._contacts))
         resting = self._resting
         if resting.alone:

@@ -38,7 +38,7 @@ MOST_SHARE, TINY = 1e30, float(np.finfo(float).tiny)
 class PlanarStick(AxialStick):
     """Friction between two bodies that sticks exactly; joints may hold them on one axis.
 
-    Its locks hold the directions of slip (m/s): those of x and y and of the rim, or of the spin (rad/s) on one axis.
+    Its locks hold the slip along x and y and of the rim (m/s), or the spin (rad/s) on one axis.
     Joints, and locks of others while it slides, leave the slips (m/s, m/s, rad/s) in ``allowed``, shape (3, k), free.
     ``direction``, shape (3,), is the slip at its release with P = 1 m/s.
     """
@@ -219,7 +219,7 @@ class PlanarStick(AxialStick):
     ) -> list[float]:
         """Return the slip that the constraint ``lock`` keeps at zero (its user function).
 
-        Unlike a connector's, its coordinates ``q`` contain the reference values.
+        Its coordinates ``q`` contain the reference values, unlike the coordinates of a connector.
         """
         return [float(self._row(lock, q) @ q_t)]
 

@@ -1,4 +1,4 @@
-"""Exact stick of a contact at several points, which stick and slide one by one.
+"""Exact stick of a contact at several points that stick and slide individually.
 
 Every point is a pin with its share of the load. If one sticks, the disc pivots about it. If joints allow only spin,
 the points stick and slide together.
@@ -61,7 +61,7 @@ class PointsOnAxis(PlanarStick):
 
 @dataclass(eq=False, kw_only=True)
 class PointSticks(AxialStick):
-    """Friction at ``points`` that stick exactly, one by one, or as a ``whole`` if joints allow only spin."""
+    """Friction at ``points`` that stick exactly and individually, or as a ``whole`` if joints allow only spin."""
 
     whole: PointsOnAxis
     points: tuple[PlanarStick, ...]
@@ -91,12 +91,12 @@ class PointSticks(AxialStick):
 
     @property
     def parts(self) -> Sequence[PlanarStick]:
-        """The whole and the points."""
+        """The whole contact and its points."""
         return self.whole, *self.points
 
     @property
     def active(self) -> Sequence[PlanarStick]:
-        """The whole or the points."""
+        """The whole contact or its points."""
         return self.parts[:1] if self.whole.on_axis else self.points
 
     def use(self, locks: Sequence[int]) -> None:

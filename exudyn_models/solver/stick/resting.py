@@ -26,8 +26,8 @@ class Group:
     """Contacts at rest that share a load.
 
     The first of their rows are constraints with forces at ``places``; ``blocks`` are the rows of each contact, and
-    ``by_chosen`` relates the slips of the other rows to those of the first. Forces along the rows change the moments
-    of meshes by ``to_loads``, shape (m, k).
+    ``by_chosen`` relates the slips of the other rows to the slips of the first rows. Forces along the rows change the
+    moments of meshes by ``to_loads``, shape (m, k).
     """
 
     mbs: Any
@@ -106,9 +106,9 @@ class Resting:
         before: Sequence[int],
         to_loads: FloatArray,
     ) -> None:
-        """Choose the rows of the contacts ``resting`` that become constraints, and find those that share loads.
+        """Choose the rows of ``resting`` contacts that become constraints, and find contacts that share loads.
 
-        ``places`` are those of the forces of all constraints, and rows ``before`` are preferred. Forces along all
+        ``places`` locate the forces of all constraints, and rows ``before`` are preferred. Forces along all
         rows change the moments of meshes by ``to_loads``, shape (m, k).
         """
         own_rows = [range(len(slips.rows))[slips.sets.blocks[i]] for i in resting]

@@ -51,7 +51,7 @@ class SlidingSteps:
         return motion.rests_within(contact.resolution * self._step / APPROACH)
 
     def resolves(self, step: float) -> bool:
-        """Return whether a ``step`` (s) was short enough, and choose the next one."""
+        """Return whether a ``step`` (s) was short enough, and choose the next step."""
         if not self._contacts:
             return True
         before, by_slip = self._directions, self._by_slip

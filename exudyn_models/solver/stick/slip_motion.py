@@ -154,7 +154,7 @@ def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, fl
 
 @compiled
 def _potential_terms(slip: FloatArray, contact: Contact) -> tuple[float, FloatArray, FloatArray]:
-    """Return P, its gradient, and P times its second derivatives; at rest those in the direction of x."""
+    """Return P, its gradient, and P times its second derivatives; at rest the derivatives in the direction of x."""
     size = math.sqrt(slip[0] ** 2 + slip[1] ** 2 + (contact[0] * slip[2]) ** 2)
     along = (
         slip / size if size > 0.0 else np.array([1.0, 0.0, 0.0])

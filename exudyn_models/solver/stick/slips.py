@@ -85,7 +85,7 @@ class Slips:
         return np.asarray(holding, float), *self._dynamics.solution(forces + holding @ self.rows[held])
 
     def give(self, wanted: dict[int, float], first: Sequence[int]) -> None:
-        """Give rows the slips ``wanted``, with the smallest kinetic energy; if rows conflict, those of ``first``."""
+        """Give rows the slips ``wanted`` at the least kinetic energy; if rows conflict, only the rows ``first``."""
         rows = list(wanted)
         gram = self.to_rates[np.ix_(rows, rows)]
         places = [i for i, row in enumerate(rows) if row in first]

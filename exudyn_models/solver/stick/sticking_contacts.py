@@ -119,7 +119,7 @@ class StickingContact:
         return [forces[0] / limits[1], -forces[0] / limits[0]], [1.0 / limits[1:], -1.0 / limits[:1]]
 
     def effective(self) -> FloatArray:
-        """Return the projection of forces along the locks on those that joints cannot take over, shape (k, k)."""
+        """Return the projection of forces along the locks onto forces that joints cannot carry, shape (k, k)."""
         return np.eye(1)
 
     def holding(self, t: float) -> float:
@@ -244,7 +244,7 @@ class PlanarContact(StickingContact):
         return self.planar.without_rounding(self.planar.holding_force(t))
 
     def effective(self) -> FloatArray:
-        """Return the projection of forces along the locks on those that joints cannot take over, shape (k, k)."""
+        """Return the projection of forces along the locks onto forces that joints cannot carry, shape (k, k)."""
         axes = self.planar.allowed[: self.planar.most_locks] * self.planar.scales[:, None]
         return np.asarray(axes @ axes.T)
 
@@ -297,7 +297,7 @@ class PlanarContact(StickingContact):
 
 
 def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
-    """Return the contacts of a model that stick exactly in a run between two times (s), and springs after them.
+    """Return the contacts of a model that stick exactly in a run between two times (s), and after them the springs.
 
     Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
     Raises ``ValueError`` if a contact in the plane accompanies a gear with losses or a one-way clutch.

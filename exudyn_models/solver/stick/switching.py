@@ -30,7 +30,7 @@ SOON = 1e-5
 """Largest difference between the roots of a line and a parabola, as a share of a step; the second is closer."""
 
 SMALL = 1e-3
-"""Largest margin near a change, relative to those of the step; margins that jump are larger."""
+"""Largest margin near a change, relative to the margins of the step; margins that jump are larger."""
 
 SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
 """Solver of all steps; constraint forces of GeneralizedAlpha contain errors of positions over the squared step."""
@@ -113,7 +113,9 @@ class _Run:
 
     def _choose_accuracy(self) -> None:
         """Change settings of Newton's method as friction requires."""
-        self._options.generalizedAlpha.computeInitialAccelerations = False  # ``dynamics`` finds better ones
+        self._options.generalizedAlpha.computeInitialAccelerations = (
+            False  # ``dynamics`` finds better accelerations
+        )
         newton = self._options.newton
         newton.maxIterations = max(newton.maxIterations, ITERATIONS)
         if self._planar:
@@ -127,7 +129,7 @@ class _Run:
         def prepare(mbs: Any, t: float) -> bool:
             for contact in self._planar:
                 contact.start_step(mbs)
-            if t <= self._announced:  # a shorter step replaces one that passed a change
+            if t <= self._announced:  # a shorter step replaces a step that passed a change
                 return True
             self._announced = t
             return own(mbs, t)
@@ -320,7 +322,7 @@ def _roots(points: Sequence[_Point], ended: NDArray[Any]) -> NDArray[Any]:
 
 
 class _SensorRows:
-    """Switches the rows of sensors on for the steps that need one; each part of a run would restart the period."""
+    """Switches sensors on only for steps that need a row, because each part of a run would restart the period."""
 
     def __init__(self, settings: Any, start: float, step: float) -> None:
         self._settings, self._next, self._step = settings, start, step
@@ -332,7 +334,7 @@ class _SensorRows:
         self._settings.active = self._wanted and on
 
     def is_due(self, t: float) -> bool:
-        """Return whether a row is due at the time t (s); if so, advance to the next one."""
+        """Return whether a row is due at the time t (s); if so, advance to the next row."""
         if t < self._next - ON_GRID * self._step:
             return False
         period = max(self._period, self._step)

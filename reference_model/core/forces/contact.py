@@ -1,9 +1,9 @@
 """Friction of a pin, a ring and an annulus under uniform pressure, in closed form.
 
 The mean slip speed on a circle is P(U, W), where the centre slips with U and the circle with W, see
-:mod:`reference_model.contact.elliptic`. With the smaller over the larger of both, k, and m = k², ∂P is L = (2/π)·E by
-the larger and S = (2/π)·k·B by the smaller, B = [E − (1 − m)·K]/m. The arithmetic-geometric mean of 1 and √(1 − m)
-gives both (DLMF 19.8(i)), and L − 2S/k without the cancellation for small k.
+:mod:`reference_model.contact.elliptic`. Let k be the smaller over the larger of U and W, and m = k². Then ∂P is L =
+(2/π)·E by the larger and S = (2/π)·k·B by the smaller, with B = [E − (1 − m)·K]/m. The arithmetic-geometric mean of 1
+and √(1 − m) gives both (DLMF 19.8(i)), and L − 2S/k without the cancellation for small k.
 
 The integral of r·∂P over a disc contains the same integrals, so force and moment follow from L and S on its rim
 (Farkas, Bartels, Unger and Wolf 2003). An annulus is the difference of two discs.

@@ -20,7 +20,7 @@ class Law(NamedTuple):
     """Scaled parameters, with forces divided by the mass.
 
     ``hold`` is the friction that can hold the centre at rest, negative if friction cannot hold the shaft's moment.
-    ``outer``, ``inner`` (over κ) and ``load`` are those of :func:`reference_model.core.forces.contact.shares`. A law
+    For ``outer``, ``inner`` (over κ) and ``load`` see :func:`reference_model.core.forces.contact.shares`. A law
     of the user, ``own``, has the load OWN; ``outer`` and ``inner`` are its resting radii.
     ``shaft`` is b/J, ``lag`` κ(ω − Ω), and ``gyration`` κ. ``stretch`` is s₀ of the stretched time.
 
@@ -28,8 +28,8 @@ class Law(NamedTuple):
     by κ; its share q of the load; the force (x, y) and the moment of all points per unit of friction if the disc
     turns about it in the positive sense; the distance to its neighbour. It is empty for a pin and a ring.
 
-    The unknown slip is that of the contact point ``point``, which lies at (``arm_x``, ``arm_y``) and carries
-    ``share``, or of the centre. ``sense`` is ±1 if this point rests and the disc turns about it, otherwise 0.
+    The unknown is the slip of the centre or of the contact point ``point``, which lies at (``arm_x``, ``arm_y``) and
+    carries ``share``. ``sense`` is ±1 if this point rests and the disc turns about it, otherwise 0.
     """
 
     damping: float

@@ -101,7 +101,7 @@ def centre_slip(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple
 
 @part
 def of_point(ax: float, ay: float, ar: float, r: float, angle: float, law: Law) -> tuple[float, float]:
-    """Return the rate of the slip of the point that ``law`` follows, for those of the centre and of r."""
+    """Return the rate of the slip of the point that ``law`` follows, from the rates of the centre and of r."""
     c, s = math.cos(angle), math.sin(angle)
     x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
     turn = r * (law.omega + r / law.gyration)

@@ -36,10 +36,10 @@ DIFFERENCE = 1e-7
 MOST_ITERATIONS = 14
 
 CONVERGED, NEAR = 1e-7, 1e-9
-"""Last change in Newton's method, relative for slip and absolute for the rest, before the next is rounding error."""
+"""Change in Newton's method, relative for slip and absolute for the rest, that leaves only rounding error."""
 
 RELATIVE = 1e-3
-"""Largest error of slip relative to it, because slip that is small decides when it ends."""
+"""Largest error of slip relative to slip, because small slip decides when it ends."""
 
 NOISE = 10.0
 """Change, in these units, that may be noise if it hardly falls."""
@@ -76,7 +76,7 @@ def rates_at(values: FloatArray, law: Law) -> FloatArray:
 def friction_derivatives(vx: float, vy: float, r: float, angle: float, law: Law) -> FloatArray:
     """Return the derivatives of the acceleration by friction of the centre and r, shape (3, 4).
 
-    Those of a ring are differences. Friction does not change along the slip, so this derivative is removed.
+    For a ring they are difference quotients. Friction does not change along the slip, so this derivative is removed.
     """
     if len(law.around) > 0:
         return turning_of_friction(vx, vy, r, angle, law)

@@ -45,21 +45,21 @@ USUAL_SPAN = 0.4
 """Usual scaled duration of a step of a lane, within which polynomials describe the motion."""
 
 STEADY = 0.2
-"""Share of its distance from the axis that the body moves in a step while longer ones suffice."""
+"""Share of its distance from the axis that the body moves in a step while longer steps suffice."""
 
 LEAST_STEP = 0.01
 """Explicit step in stretched time below which the core goes on."""
 
 SHARE = 0.5
-"""Tolerance of a step of the core as a share of that of a lane, which is twice as large."""
+"""Tolerance of a step of the core as a share of the tolerance of a lane, which is twice as large."""
 
 
 class Room(NamedTuple):
     """The compiled core with the arrays of a run, for one thread.
 
-    ``state``, ``memory``, ``times``, ``out`` and ``phases`` are those of :func:`reference_model.core.run.follow`.
-    ``parameters`` and ``around`` are those of :func:`reference_model.core.forces.law.unpacked`. The ``core`` arrives
-    apart, because compiled code takes no function in a tuple from Python.
+    For ``state``, ``memory``, ``times``, ``out`` and ``phases`` see :func:`reference_model.core.run.follow`. For
+    ``parameters`` and ``around`` see :func:`reference_model.core.forces.law.unpacked`. ``core`` is a separate
+    argument, because compiled code does not accept a tuple with a function from Python.
     """
 
     state: FloatArray

@@ -1,7 +1,7 @@
 """Decorators for compiled functions.
 
-Results must be the same bit by bit in any lane, on any number of threads, and on machines with and without FMA, so
-nothing may be reordered or contracted.
+Results must be bitwise identical in any lane, on any number of threads, and on machines with and without FMA, so the
+compiler must not reorder or contract operations.
 """
 
 import math
@@ -26,7 +26,7 @@ INLINED: Any = {**PART, "forceinline": True}
 SOURCES = Path(__file__).parents[2]
 
 DIGEST = "-".join(digest_of(SOURCES / package) for package in ("ensemble", "core", "trajectory"))
-"""Digests of all sources that are compiled, or contain constants that are."""
+"""Digests of all sources with compiled functions or constants."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

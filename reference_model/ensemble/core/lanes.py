@@ -2,7 +2,7 @@
 
 Each number has its own row (:mod:`records`), so a loop over the lanes is vectorised if it calls only inlined
 functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events it raises
-a flag, which scalar code handles. Results are the same bit by bit in every lane.
+a flag, which scalar code handles. Results are bitwise identical in every lane.
 """
 
 import math
@@ -46,7 +46,8 @@ class Memory(Record):
     """Scalar data of a lane.
 
     ``length`` and ``rate`` are the unit of length in m and the inverse unit of time in 1/s, ``tick`` is the time
-    between checks. The next step by the core lasts ``span``; it has the ``patience`` for short steps of the last one.
+    between checks. The next step by the core lasts ``span`` and tolerates as many short steps as the last
+    (``patience``).
     """
 
     number: int

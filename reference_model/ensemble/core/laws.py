@@ -12,7 +12,7 @@ ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
 """Largest relative slip that counts as rounding, so that the body sticks."""
 
 STRETCHING_TIME = 0.5
-"""Scaled ratio s₀/g. A larger one shortens steps, a smaller one makes rest and release stiffer."""
+"""Scaled ratio s₀/g. A larger value shortens steps, a smaller value makes rest and release stiffer."""
 
 SPENT_SHARE = 0.1
 """Share of the tolerance for the slip that remains when creep counts as over."""
@@ -38,7 +38,7 @@ class PinLaw(NamedTuple):
 
 
 class DiscLaw(NamedTuple):
-    """Constants of a disc, scaled so that motion is of order one; seven are those of a pin.
+    """Constants of a disc, scaled so that motion is of order one; a pin has seven of them.
 
     ``around`` contains (cos, sin) of the direction of each contact point in sequence; () for the ring. ``leverage``
     is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.

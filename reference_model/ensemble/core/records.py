@@ -29,7 +29,7 @@ class Record:
 
 
 class Rows(Generic[Numbers]):
-    """A field with a row for each number of a named tuple, under its name."""
+    """A structured field with one row per element of a named tuple, named like the element."""
 
     def __getattr__(self, name: str) -> FloatArray:
         raise NotImplementedError

@@ -12,7 +12,7 @@ ACCURACY = 1e-4
 """Relative distance that may remain when a motion counts as converged."""
 
 STILL = 1e-2
-"""Distance between crossings that is only noise, as a fraction of that allowed by ACCURACY."""
+"""Distance between crossings that is only noise, as a fraction of the distance that ACCURACY allows."""
 
 NO_WINDOW = 0
 """Kind of a window that measures nothing."""

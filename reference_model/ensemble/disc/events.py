@@ -3,7 +3,8 @@
 Self-centred
     The state, checked once per free period, converges: d·q/(1 − q) is small, with the distance d between checks and q
     the larger of its last two ratios (:mod:`.core.recurrence`). A motion may pass close to an unstable equilibrium,
-    as in Fig. 11, so the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
+    as in Fig. 11, so the equilibrium must also attract, and Newton's method must confirm the distance
+    (:mod:`.stability`).
 Whirl
     The same for the states where x is largest. Without an offset the radius, the velocities along and across it, and
     the spin converge from check to check.
@@ -61,7 +62,7 @@ from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
 ByCore = Callable[[DiscLanes, DiscMemory, int, DiscLaw, Setup], bool]
-"""Replaces the trial step by one of the core; returns whether the trajectory ends."""
+"""Replaces the trial step by a step of the core; returns whether the trajectory ends."""
 
 STILL = 1e-2
 """Largest oscillation of a motion that approaches a point (relative to |ωz|) or a circle (to the radius)."""

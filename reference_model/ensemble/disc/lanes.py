@@ -70,7 +70,8 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
-"""Degrees of watching: no flags; flags where x is largest; also where the radius is extreme; only the latter."""
+"""Degrees of watching: no flags; flags where x is largest; flags there and where the radius is extreme; only the
+last."""
 
 SHORT_STEP, MANY = 0.1, 40.0
 """As for pins; explicit steps of discs cost more."""
@@ -85,7 +86,7 @@ AT_END = 1e-13
 """Scaled time that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
-"""Slip speeds, in units of g, below which the tolerance of slip is relative and slip may end, respectively."""
+"""Slip speeds in units of g: below the first the tolerance of slip is relative, below the second slip may end."""
 
 
 @written_out

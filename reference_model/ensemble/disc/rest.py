@@ -58,7 +58,7 @@ GOES_ON, ENDS, FAILS = 0, 1, 2
 def step_by_core_with(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setup: Setup, rates: RatesInRoom
 ) -> bool:
-    """Replace the trial step by one of the core; return whether the trajectory ends."""
+    """Replace the trial step by a step of the core; return whether the trajectory ends."""
     room, before = setup.room, state_at(lanes.now, lane)
     take_in(memory, law, setup)
     end = lanes.duration[lane]
@@ -192,7 +192,7 @@ def _held_pin(memory: DiscMemory, law: DiscLaw) -> PinLaw:
 def _creeps_by_turns(memory: DiscMemory, law: DiscLaw, radius: float) -> bool:
     """Return whether the disc creeps inward forever: the centre slips no farther than an equally held pin.
 
-    This is known for linear supports and contacts that are the same in all directions.
+    The criterion holds for linear supports and isotropic contacts.
     """
     known = memory.law[HARDENING] == 0.0 and memory.law[STOP] == 0.0 and len(law.around) == 0
     return known and creeps_by_turns(radius, memory.peaks.values[0], _held_pin(memory, law))

@@ -21,8 +21,8 @@ Whirl
     For equal parameters ``trapping`` finds the orbit and a neighbourhood that its return map to the section where x
     is largest contracts. Otherwise the crossings must converge: with the distance d of the last two and the larger q
     of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY times the speed there. Distances that are
-    only noise also count. A motion may pass an unstable orbit, so the orbit must also attract, and be as close by the
-    derivative of its return map. Small deviations (δz, δv), with the slip velocity w = s·n, satisfy::
+    only noise also count. A motion may pass an unstable orbit, so the orbit must also attract, and the derivative of
+    its return map must confirm the distance. Small deviations (δz, δv), with the slip velocity w = s·n, satisfy::
 
         δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 
@@ -120,7 +120,7 @@ MOST_STRIDES = 20_000
 """Largest number of steps in a turn; more are needed only if slip almost ends."""
 
 COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0))
-"""How far the rates of each stage carry the next one, and their weight in the step."""
+"""Weights of the rates of each stage in the next stage and in the step."""
 
 
 @written_out
@@ -130,7 +130,8 @@ def orbit_attracts(
     """Return whether an orbit attracts and is near, given position z and velocity v of a pin where x is largest.
 
     ``came`` is the change of x, y and ẏ since the previous crossing. With the derivative M of the return map the
-    orbit is (1 − M)⁻¹ times ``came`` away from the previous crossing, and must be within ``near`` of this one.
+    orbit is (1 − M)⁻¹ times ``came`` away from the previous crossing, and must be within ``near`` of the present
+    crossing.
     """
     derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
     if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):

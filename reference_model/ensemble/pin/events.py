@@ -1,6 +1,6 @@
 """Rare events of a pin: rest and release, crossings of the section, and end states.
 
-Functions that return a bool return whether the trajectory ends, if not stated otherwise.
+Functions that return a bool return whether the trajectory ends, unless stated otherwise.
 """
 
 import math
@@ -78,7 +78,7 @@ REVERSAL_SLIP = 1e-13
 """Scaled slip below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""Earliest scaled time of a crossing; an earlier one is the start."""
+"""Earliest scaled time of a crossing; an earlier crossing is the start itself."""
 
 
 @written_out
@@ -329,7 +329,7 @@ def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
 
 @scalar
 def step_by_core(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, settings: Settings) -> bool:
-    """Replace the trial step of stiff slip by one of the core, up to rest; return whether the trajectory ends."""
+    """Replace the trial step of stiff slip by a step of the core, up to rest; return whether the trajectory ends."""
     now, trial, room = lanes.now, lanes.trial, settings.room
     t, pace, z, w = now.state.time[lane], now.rates.time[lane], position_at(now, lane), slip_at(now, lane)
     until = min(t + memory.span, memory.duration)

@@ -64,7 +64,7 @@ STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
 """Largest number of steps of a motion before it is undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 160.0
-"""Scaled duration of a short step, and number of successive ones that calls for the core.
+"""Scaled duration of a short step, and number of successive short steps that calls for the core.
 
 A step of the core costs as much as a thousand steps in shared lanes.
 """
@@ -163,7 +163,9 @@ def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw
     lanes.short[lane] = 0.0
     h = FIRST_STEP
     if law.friction > 0.0:
-        h = min(h, (abs(w) + law.stretching) / law.friction)  # the direction of slip is slaved no faster
+        h = min(
+            h, (abs(w) + law.stretching) / law.friction
+        )  # the direction of slip follows the pull no faster
     lanes.trial.step[lane] = h
 
 

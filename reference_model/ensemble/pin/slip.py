@@ -89,7 +89,7 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
-    """Return whether slip follows the pull closely enough to decay like slow slip.
+    """Return whether slip is so close to the direction of the holding force that it decays like slow slip.
 
     Friction draws the direction of slip to the pull at the rate g/s, far above all other rates. The oscillator of
     :func:`creeps_steadily` keeps s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, which e >= c·s/2 implies.

@@ -2,7 +2,7 @@
 
 Both are fixed points of a map: the flow over a given time, or the return to the section where x is largest. Near a
 stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The map moves the
-region, an ellipsoid, and all smaller ones into clearly smaller ones.
+region, an ellipsoid, and all smaller ellipsoids of its shape into clearly smaller ellipsoids.
 """
 
 import math
@@ -32,7 +32,7 @@ DIRECTIONS = 128
 """Number of points on an ellipsoid."""
 
 GROWTH = 1.25
-"""Ratio of successive ellipsoids; the first one is FIRST times the size of the motion."""
+"""Ratio of successive ellipsoids; the first ellipsoid is FIRST times the size of the motion."""
 
 FIRST = 1e-2
 

@@ -1,6 +1,6 @@
 """Section 3 of the paper: the whirl (11), its stability, (12) to (16), and the whirl with an offset.
 
-The latter is (18), with the exact first and third orders in X0. Its functions raise ``ValueError`` as
+For the offset it contains (18), and the exact first and third orders in X0. Its functions raise ``ValueError`` as
 :func:`whirl_radius`.
 """
 
@@ -83,9 +83,8 @@ def require_whirl(pin: PinOnDisc) -> None:
         frequency = circling_speed(pin, radius)
         if abs(pin.disc_speed) <= frequency:
             raise ValueError(
-                f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if the disc turns faster than the "
-                f"{frequency:g} rad/s at which the support carries the pin on a circle of {radius:g} m; here the "
-                "pin ends by sticking"
+                f"disc_speed = {pin.disc_speed:g} rad/s: a whirl needs |disc_speed| > {frequency:g} rad/s, the speed "
+                f"of free motion on a circle of {radius:g} m; below it the pin ends up sticking"
             )
         return
     if abs(pin.disc_speed) <= pin.natural_frequency:
@@ -98,8 +97,8 @@ def require_whirl(pin: PinOnDisc) -> None:
 def variational_matrix(pin: PinOnDisc) -> FloatArray:
     """Return the matrix of (12), shape (3, 3): its product with (ξ, ξ̇, η) is the time derivative of (ξ, ξ̇, η).
 
-    ξ is the deviation of the radius in m, and η that of the angular velocity in the sense of ω, in rad/s. Raises
-    ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
+    ξ is the deviation of the radius in m, and η the deviation of the angular velocity in the sense of ω, in rad/s.
+    Raises ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
     """
     require_positive(pin, "damping", "friction_force")
     rate, k = pin.damping / pin.mass, pin.natural_frequency
@@ -224,9 +223,9 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
     """Return the imaginary part of the whirl's mean at third order in X0 over first order, to leading order in d.
 
     Let d = β/(mk) and τ = kt. In units of ρ_c, (1) without damping has the motions X0 + ρ·exp(iτ) + σ·exp(−iτ).
-    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean:
-    that of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and b = (2w − 1)σ/ρ. Its
-    harmonics to third order give::
+    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean.
+    The slip has the direction of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and
+    b = (2w − 1)σ/ρ. Its harmonics to third order give::
 
         exp(iτ)   1 − a²/4           = ρ
         exp(−iτ)  b/2 − a²/8         = −σ

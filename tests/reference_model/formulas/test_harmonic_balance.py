@@ -46,7 +46,7 @@ def test_pin_without_a_harmonic_balance_is_refused():
     for changes, reason in (
         ({"stop_stiffness": 3.0}, "stop_stiffness = 3 N/m"),
         ({"damping": 0.0}, "as fast as the disc"),
-        ({"disc_speed": 1.1}, "ends by sticking"),
+        ({"disc_speed": 1.1}, "ends up sticking"),
     ):
         assert reason in refusal(whirl_by_harmonic_balance, replace(HARD, **changes))
     with pytest.raises(RuntimeError, match="offset = 50 m: too large for harmonic balance"):

@@ -75,7 +75,7 @@ def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
 
 
 def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
-    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the latter."""
+    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the rim's."""
     alphas = [math.atan2(1.0, ratio) for ratio in ratios]
     return [
         (cmath.rect(SPEED * math.cos(alpha), DIRECTION), sign * SPEED * math.sin(alpha))
@@ -112,8 +112,8 @@ def friction_on(
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
     found, error = refined(friction, TIGHTEST)
-    # Single errors may be small by chance, so take the largest noise of all motions and each one's largest truncation
-    # error.
+    # Single errors may be small by chance, so take the largest noise of all motions and the largest truncation error
+    # of each motion.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
     along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
     return Measured(
@@ -239,13 +239,14 @@ def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
 
 
 OF_RINGS = (
-    f"With {', '.join(map(str, RINGS))} rings on either side of the ring with the resting point, compared with 100. "
+    f"With {', '.join(map(str, RINGS))} rings on either side of the ring with the resting point, compared "
+    f"with 100 rings. "
     "Errors: scatter, and the change without a next term."
 )
 
 
 @STUDY.claim(
-    "An annulus with a resting point converges with the number of rings at order 12",
+    "With a resting point, the ring approximation of an annulus converges with order 12",
     kind="order",
     resolution=1.5,
     note=OF_RINGS,
@@ -283,7 +284,7 @@ def of_orders(observed: Sequence[tuple[float, float, float]], order: float, **mo
 
 
 @STUDY.claim(
-    "A thin annulus equals a ring, up to the square of its width",
+    "A thin annulus acts like a ring; the difference is of second order in its width",
     equation="(20)",
     kind="order",
     resolution=0.1,

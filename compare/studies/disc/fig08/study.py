@@ -47,7 +47,7 @@ STICKING_RATIOS, STICKING_TIME = (0.98, 1.02, 1.05), 80.0
 """μN as a multiple of the largest μN with an equilibrium, and time (s) until a disc gains the last 5 % of ω."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
-"""X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
+"""X0 in m, which the paper omits; 0.1 m is the value of Figs. 4 to 6."""
 
 TOLERANCE = WORKING / 10  # for motions to rest, because the claims resolve 1e-9
 BALANCED = 1e-9  # largest residual force due to rounding, as a share of μN; (26) as printed leaves far more
@@ -238,8 +238,8 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
 @STUDY.claim(
     "A disc on the axis sticks to the master disc above the μN at which the equilibrium ends, but not below",
     equation="(5)",
-    note=f"Does it stick, or not, after {STICKING_TIME:g} s at "
-    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} of this μN? Starts on the axis with 95 % of the "
+    note=f"Does the disc stick after {STICKING_TIME:g} s at "
+    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} times this μN? Starts on the axis with 95 % of the "
     "speed of the master disc.",
     basis="reference",
     swept=("friction_force",),
@@ -332,7 +332,7 @@ def printed_26() -> Measured:
 
 
 @STUDY.claim(
-    "The corrected (26) ends at the μN at which friction (23) holds the disc against springs and shaft",
+    "The branch of the corrected (26) ends at the load that lets friction (23) hold the disc",
     equation="(5), (26)",
     unit="N",
     resolution=1e-9,

@@ -39,9 +39,10 @@ FOLLOWED = (
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,
-    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. According to the paper, this "
-    "equilibrium is stable at every speed; only that of the pin is. The friction of a ring grows with its slip. On a "
-    f"master disc faster than k, it drives the disc around more than β damps it. {FOLLOWED}",
+    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. According to the paper, "
+    f"this equilibrium is stable at every speed; only the equilibrium of the pin is. The friction of a "
+    f"ring grows with its slip. "
+    f"If ω > k, friction drives the disc around by more than β damps. {FOLLOWED}",
     basis="reference",
     swept=("friction_force",),
 )
@@ -112,8 +113,9 @@ REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force 
     "A disc stuck at 0.98 of the radius (9) turns with the master disc permanently",
     equation="(9)",
     resolution=1e-2,
-    note="After one revolution: displacement on the master disc relative to the radius, turn against it in rad, spin "
-    "against it relative to ω, and the number of slip phases. The holding force has the period of a "
+    note="After one revolution: displacement on the master disc relative to the radius, turn relative to the "
+    "master disc in rad, relative spin over ω, and the number of slip phases. The holding force has the "
+    "period of a "
     "revolution. Equation (9) uses the force that remains after the moment b(ω − Ω). Error: the change at a "
     "smaller tolerance, which reveals the creep of a law that only approximates stick.",
     basis="reference",
@@ -272,8 +274,8 @@ def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Mea
     equation="(7)",
     kind="trajectory",
     resolution=2e-3,
-    note="Displacement on the master disc relative to the radius, and (spin − ω)/ω, after 1.5 times the release time "
-    f"of (7) for the continuous ring; at {theory.OUTSIDE[-1]:g} of the radius (9). "
+    note=f"Starts at {theory.OUTSIDE[-1]:g} times the radius (9). Displacement on the master disc relative to the "
+    "radius, and (spin − ω)/ω, after 1.5 times the release time (7) of the continuous ring. "
     f"{BY_REFERENCE}",
     swept=("friction_force",),
 )

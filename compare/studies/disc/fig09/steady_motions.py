@@ -136,7 +136,7 @@ def error_of_23(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The whirl's radius tends to the pin's μN/(βk), and its spin to a limit independent of μN, both like (μN)⁻²",
+    "The whirl's radius tends to the pin's μN/(βk), its spin to a limit; both deviations are proportional to (μN)⁻²",
     equation="(11)",
     kind="order",
     resolution=0.1,

@@ -37,11 +37,11 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number in order of decreasing size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from one to the next
+ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from circle to circle
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
-"""μN in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner one."""
+"""μN in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner whirl."""
 
 HALVED_OFFSETS, OFFSET_LOAD = (0.2, 0.1, 0.05), 0.02
 """X0 in m and μN in N of whirls that show the effect of X0."""
@@ -54,7 +54,7 @@ DISPLACED = 1e-4
 """μN in N and duration in s of deviations from the whirl and from equilibria; share of the distance from the axis."""
 
 ORBIT_TOLERANCE, TOLERANCE = WORKING / 10, 3e-8
-"""For periodic motions of engines, and for sticking ones, where regularised laws close to Coulomb's are expensive."""
+"""For periodic and sticking motions of engines, where regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
 """End of the axis in N, which the paper omits; sticking begins at about half of it, C·X0."""
@@ -84,7 +84,7 @@ def rest_of(load: float) -> SpinningEquilibrium:
 
 
 def exact_motion(load: float, which: int | None) -> SpinningWhirl | SpinningEquilibrium:
-    """Return the whirl without offset of that number, or the equilibrium with the offset for None."""
+    """Return the whirl number ``which`` without offset, or for None the equilibrium with the offset."""
     return rest_of(load) if which is None else circle_of(load, which)
 
 
@@ -139,7 +139,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls of decreasing size, from the whirl of ``disc`` through the fold to the inner, unstable ones."""
+    """Yield whirls of decreasing size, from the whirl of ``disc`` through the fold to the inner, unstable whirls."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
@@ -197,7 +197,7 @@ def weak_damping_load(disc: DiscOnDisc) -> float:
 
 
 def marginal_ratio(law: IsotropicContact | None) -> float:
-    """Return the α of the whirl, tan α = R|S|/U, where an eigenvalue other than the phase's is zero."""
+    """Return the α of the whirl, tan α = R|S|/U, with a second eigenvalue of zero."""
 
     def growth(alpha: float) -> float:
         whirl = whirl_at(CENTRED, alpha, law)
@@ -258,7 +258,7 @@ def smooth(found: Sequence[Orbit]) -> Data:
 
 
 def rests_and_sticking() -> Data:
-    """Return μN, radius and spin of equilibria, the largest μN of stable ones, and μN and radius (9) of stick."""
+    """Return μN, radius and spin of equilibria, their largest stable μN, and μN and radius (9) of stick."""
     end = last_load(RING)
     sticking = np.geomspace(end, LARGEST_LOAD, 100)[1:]
     loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer where the radius is steep

@@ -22,7 +22,7 @@ ROUND = np.linspace(0.0, 300.0, 3001)  # times in s, longer than a period of the
 OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
-"""X0 in m of the long simulations; the last is that of the other figures."""
+"""X0 in m of the long simulations; the last value belongs to the other figures."""
 
 ENDS_UNTIL, LOOKED_AT, ENDS_TOLERANCE = 720.0, 240.0, 1e-4
 """Duration in s, its evaluated end in s, a period of the modulation, and tolerance."""
@@ -59,13 +59,13 @@ def critical(engine: Engine) -> Measured:
 
 @functools.lru_cache(maxsize=4)
 def critical_of(engine: Engine) -> tuple[float, Measurement]:
-    """Return the critical X0 (m) by exact multipliers and by the engine's, NaN if there is none."""
+    """Return the critical X0 (m) from the exact multipliers and from the engine's; NaN if there is none."""
     found = functools.cache(lambda tolerance: theory.critical_offset(engine, tolerance))
     try:
         measured, error = refined(lambda tolerance: found(tolerance)[0])
         _, interpolation, slope, near = found(WORKING)
         exact = theory.multipliers_by_variation(theory.disc_at(float(measured)), near)
-    except RuntimeError:  # no whirl, or no critical one
+    except RuntimeError:  # no whirl, or no critical whirl
         return math.nan, Measurement(np.array(math.nan), np.array(0.0))
     error = error + interpolation + error_of_monodromy(near) / abs(slope)
     predicted = float(measured) - (theory.pair_modulus(exact) - 1.0) / slope

@@ -34,7 +34,7 @@ UNTIL = 700.0  # duration in s, three periods of the modulation
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
 TRIED, BOTH_STABLE, SAMPLES_A_TURN = (0.0072, 0.00725, 0.0073), 0.0073, 16
-"""X0 in m around the critical X0, which is interpolated, one slightly above it, and samples per turn."""
+"""X0 in m around the critical X0, which is interpolated; an X0 slightly above it; and samples per turn."""
 
 STUDY = Study.beside(
     __file__,
@@ -84,7 +84,7 @@ class SteadyWhirl:
 
 @functools.cache
 def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SteadyWhirl:
-    """Return the whirl without offset; on points, that closest to the circle of the ring."""
+    """Return the whirl without offset; on points, the whirl closest to the circle of the ring."""
     ring = replace(disc, contact_points=None)
     circle = whirls(ring, contact)[0]
     if disc.contact_points is not None:
@@ -133,7 +133,7 @@ def _pair(values: ComplexArray) -> complex:
 
 
 def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return right and left eigenvector of the least damped pair; the right one's (x, y) has length 1."""
+    """Return right and left eigenvector of the least damped pair; (x, y) of the right eigenvector has length 1."""
     which = int(np.argmin(np.abs(values - _pair(values))))
     left = np.linalg.inv(right)[which]
     size = np.linalg.norm(right[:2, which])
@@ -146,7 +146,7 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 def modulations(states: FloatArray) -> FloatArray:
     """Return period (s), turn (rad), smallest and largest radius (m) and spin (rad/s) of each modulation, (n, 6).
 
-    A modulation lasts from one maximum of the radius to the next; ``states`` are those at ``TIMES``.
+    A modulation lasts from one maximum of the radius to the next; ``states`` belong to ``TIMES``.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
@@ -163,7 +163,7 @@ def modulations(states: FloatArray) -> FloatArray:
 
 
 def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the last row of :func:`modulations` and its change from the previous one; NaN without two rows."""
+    """Return the last row of :func:`modulations` and its change from the previous row; NaN without two rows."""
     found = modulations(states)
     if len(found) < 2:
         return np.full(6, np.nan), np.full(6, np.nan)

@@ -301,9 +301,9 @@ def heat(engine: Engine, throws: Throws = RINGS) -> Measured:
 
 
 @STUDY.claim(
-    "The speeds end in a finite ratio for mR²/2 < J < 2mR², and for no other J",
+    "The ratio of the speeds stays finite only for mR²/2 < J < 2mR²",
     equation="(20)",
-    note="Is there, or is there not, a balance of both decelerations in the closed form of (20)? For "
+    note="Does the closed form of (20) contain a balance of both decelerations? For "
     f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:
@@ -340,7 +340,7 @@ THIN = 1e-3
     equation="(20)",
     resolution=1e-2,
     note="Final ratio of sliding to rim speed for an inner radius of 0.999 times the outer one. Model error: the "
-    "width over the radius; the radius of gyration differs from the outer one by half of it.",
+    "width over the radius; the radius of gyration differs from the outer radius by half of the width.",
 )
 def published_ratio_of_a_ring() -> Measured:
     return Measured(predicted=1.0, value=annulus_ratio(1.0 - THIN), error=1e-10, model=THIN, source=PUBLISHED)

@@ -73,7 +73,7 @@ OTHERS = tuple(Throw(inertia, degrees) for inertia in (0.7, 1.4) for degrees in 
 INTEGRATED = (*RINGS, *OTHERS)
 
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
-"""Throws with J/(mR²) outside 1/2 to 2."""
+"""Throws with J/(mR²) outside the range from 1/2 to 2."""
 
 INTERVALS = 400  # samples until rest
 
@@ -89,7 +89,7 @@ SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and 
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
 
 INERTIAS = (0.1, 0.3, 0.45, 0.499, 0.501, 0.55, 0.7, 1.3, 1.7, 1.9, 1.99, 2.01, 2.2, 3.0, 10.0)
-"""J/(mR²) inside and outside 1/2 to 2."""
+"""Values of J/(mR²) inside and outside the range from 1/2 to 2."""
 
 
 def nearness(delta: ArrayLike) -> FloatArray:

@@ -58,8 +58,9 @@ def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
     "At every point of the Hopf curves, a pair of eigenvalues of the whirl is imaginary",
     equation=BOTH_LAWS,
     resolution=1e-10,
-    note="Real part over frequency, by the Jacobian in the frame that turns with the whirl, which the tracing does "
-    f"not use. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues.",
+    note="Real part over frequency. They come from the Jacobian in the frame that turns with the whirl, which "
+    "the tracing of the curves does not use. {CURVES}. Error: rounding, from the condition numbers of the "
+    "eigenvalues.",
 )
 def marginal(curves: theory.Traced | None = None) -> Measured:
     found = _spectra_on_map("Hopf") if curves is None else theory.spectra("Hopf", curves)
@@ -91,7 +92,7 @@ def no_other_grows() -> Measured:
     equation=BOTH_LAWS,
     resolution=1e-8,
     note=f"The smallest eigenvalue over k. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues, "
-    "which grow where a second one becomes zero.",
+    "which grow where a second eigenvalue becomes zero.",
 )
 def folds() -> Measured:
     found = _spectra_on_map("fold")

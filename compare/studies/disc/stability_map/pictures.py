@@ -166,7 +166,7 @@ def shown(plane: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
 def hopf_curve(theory: Data, plane: str, x: FloatArray, side: float) -> FloatArray:
     """Return the second coordinate of the ring's Hopf curve at ``x``, NaN outside its range.
 
-    ``side`` is +1 for small whirls, whose rim slips faster than the centre, and -1 for large ones.
+    ``side`` is +1 for small whirls, whose rim slips faster than the centre, and -1 for large whirls.
     """
     result = np.full_like(x, np.nan)
     for curve in curves(theory, plane, "ring", "Hopf"):

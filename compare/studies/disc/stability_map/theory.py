@@ -52,9 +52,9 @@ def state_at(disc: DiscOnDisc, alpha: float, law: IsotropicContact) -> FloatArra
 def critical_eigenvalues(
     disc: DiscOnDisc, state: FloatArray, law: IsotropicContact
 ) -> tuple[ComplexArray, float]:
-    """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
+    """Return the eigenvalues of a whirl without the phase's, the critical first, and their rounding error (1/s).
 
-    The error includes that of the state, because friction's slopes depend on small differences of U and W.
+    The error includes the error of the state, because friction's slopes depend on small differences of U and W.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))

@@ -215,8 +215,8 @@ def _order(lengths: FloatArray, runs: list[theory.Run], times: FloatArray, *, pr
 
 OF_PUBLISHED = (
     "Published by the Modelica Association: Dymola 2020x, DASSL. Numerical error: "
-    f"{theory.ACCUMULATED:g} times its relative tolerance of {theory.PUBLISHED_TOLERANCE:g}, times the largest value "
-    "of its kind."
+    f"{theory.ACCUMULATED:g} times Dymola's relative tolerance of {theory.PUBLISHED_TOLERANCE:g}, times the largest "
+    "value of the same kind."
 )
 SLIPS = tuple(f"slip of clutch {i}" for i in range(1, len(INERTIAS)))
 

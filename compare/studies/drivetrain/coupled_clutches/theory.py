@@ -39,13 +39,13 @@ EPSILONS, TOLERANCE = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0]), 1e-9
 """Explicit steps: ε in m/s, which equals rad/s at the radius of 1 m, and a tolerance of a millionth of its effect."""
 
 STEPS, SMALL_EPSILON = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0]), 1e-5
-"""Implicit steps in s, and their ε in m/s, whose effect is at most a tenth of that of the shortest step."""
+"""Implicit steps in s, and their ε in m/s, whose effect is at most a tenth of the effect of the shortest step."""
 
 ALL_SLIP_UNTIL, LETS_GO_FROM = 0.7, 0.82
 """Times in s: all closed clutches slip until the first, one of ``SHOWN``; the first release is after the second."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
-"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from each to the next.
+"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from row to row.
 
 The bristle's damping in N m s/rad is twice the root of its stiffness, critical for a rotor of 1 kg m².
 """
@@ -54,7 +54,7 @@ DECAY = 1e-4
 """Range of slip in rad/s where that connector's friction falls from its static to its sliding value."""
 
 PUBLISHED_TOLERANCE, ACCUMULATED = 1e-6, 10.0
-"""Relative tolerance of DASSL in the published result, and assumed ratio of the motion's error to it."""
+"""Relative tolerance of DASSL in the published result, and assumed ratio of the motion's error to this tolerance."""
 
 
 def first_load(time: float) -> float:

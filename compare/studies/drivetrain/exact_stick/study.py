@@ -23,14 +23,15 @@ SOLVERS, STEPS, COARSER = ("TrapezoidalIndex2", "GeneralizedAlpha"), (2e-3, 4e-3
 """Solvers with exact stick, steps in s, and a factor on the steps of slow motions."""
 
 SPEEDS, UNTIL, BRAKED = (6.0, 0.0, 0.0, -2.0), 2.0, 0.35
-"""Initial speeds of four rotors in rad/s, their duration in s, and that of the braked wheel."""
+"""Initial speeds of four rotors in rad/s, the duration of their motion in s, and the duration for the braked
+wheel."""
 
 READ = np.array([0.2, 0.48, 0.8, 1.12, 1.2])
 """Times in s at the ends of steps."""
 
 NOTE = (
-    "With both implicit solvers. Numerical error: the change from twice the step, three times an error of second "
-    "order, or a quarter of the change before."
+    "Measured with both implicit solvers. Numerical error: the largest of three numbers: the change from "
+    "twice the step, three times an error of second order, and a quarter of the previous change."
 )
 BEGINS = {STUCK: "sticks", FORWARD: "slips forward", BACKWARD: "slips backward", OPEN: "opens"}
 
@@ -88,7 +89,7 @@ PAPER: dict[str, tuple[System, tuple[float, ...], float]] = {
         6.0,
     ),
 }
-"""System, initial state and duration in s. The disc is that of Fig. 9, changed so that it sticks."""
+"""System, initial state and duration in s. The disc of Fig. 9, changed so that it sticks."""
 
 STUDY = Study.beside(
     __file__,
@@ -147,7 +148,7 @@ def switches(engine: Engine, case: Case) -> Measured:
     "A pendulum with a dry bearing reverses and rests at the angles of its energy balance",
     unit="rad",
     resolution=1e-5,
-    note=f"The heat is divided by the moment of the bearing. {NOTE}",
+    note=f"Heats are divided by the moment of the bearing. {NOTE}",
 )
 def pendulum(engine: Engine) -> Measured:
     angles = theory.swings()

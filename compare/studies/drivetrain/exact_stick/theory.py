@@ -65,7 +65,7 @@ class Model(Rotors):
         return self.run(until, round(until / step), solver=solver, breaks=breaks, newton=NEWTON)
 
     def times(self, expected: Sequence[Event]) -> FloatArray:
-        """Return the times (s) of the ``expected`` events in the last run, or NaN if its events are others."""
+        """Return the times (s) of the ``expected`` events in the last run, or NaN if the run has other events."""
         numbers = [int(contact.item) for contact in self.contacts]
         found = sorted(
             Event(numbers.index(int(one.contact)), one.time, int(one.after)) for one in self.changes
@@ -147,7 +147,8 @@ BRAKES, WHEEL, WHEEL_UNTIL = (10.0, 8.0), 0.5, 0.3
 """Moments in N m of two brakes, inertia in kg m² of their wheel, and end of its load in s."""
 
 LOOP, LOOPED, LOOP_UNTIL = (6.0, 4.0, 8.0), (1.0, 0.5), 0.4
-"""Moments in N m between the ground and two rotors and between both, their inertias, end of the load of the first."""
+"""Moments in N m between the ground and two rotors and between both rotors, their inertias, and the end of the first
+load."""
 
 
 def loaded(inertias: Sequence[float], until: float, moments: Sequence[float], order: Sequence[int]) -> Model:

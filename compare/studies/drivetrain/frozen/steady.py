@@ -120,9 +120,9 @@ def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float)
 
 NOTE = (
     f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
-    "slowest mode. Numerical error: the change at a smaller tolerance, the remaining transient according to its "
+    "slowest mode. Numerical error: the change at a smaller tolerance, the remaining transient, judged by its "
     f"change in the last {theory.SEEN:g} decay times, and the change of the prediction with finer rings of the "
-    "annulus. The largest error counts for all values, because a single small one may be a coincidence."
+    "annulus. The largest error counts for all values, because a single small error may be a coincidence."
 )
 
 

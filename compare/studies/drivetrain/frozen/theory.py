@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 FINER = 24
-"""Rings of the reference's annulus instead of 16, to estimate their error."""
+"""Rings of the reference's annulus in place of 16, which shows the error of 16 rings."""
 
 CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
 TORQUE, SLIPPING = 80.0, 12.0
@@ -61,14 +61,14 @@ TIME, DEVIATION, TOLERANCE = 0.4, 3e-3, 20 * WORKING
 
 PUSH, UNTIL, CYCLE_SAMPLE, ROUGHER = 0.2, 6.0, 2e-3, 80.0
 """Modulated motion: initial deviation as a share of the radius, end and sampling interval in s, and tolerance as a
-multiple of the usual one.
+multiple of the usual tolerance.
 """
 
 SPEEDS, TORQUES = np.linspace(2900.0, 6500.0, 32), np.geomspace(0.2, 60.0, 32)
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 SURPLUS, SPEED = 0.1, 6000.0
-"""Speeds in rpm, from just above the natural frequency, torques in N m and surpluses of the maps; surplus in the map
-of speeds, and speed in the map of surpluses.
+"""Axes of the maps: speeds in rpm from just above the natural frequency, torques in N m and surpluses. Then the
+surplus of the map of speeds, and the speed of the map of surpluses.
 """
 
 ENGINE, VEHICLE, ANGLE, CENTRE = 0, 1, 4, slice(2, 4)
@@ -170,7 +170,7 @@ def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
 
 
 def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
-    """Return six eigenvalues (1/s), slowest decay first, without those of free phase and free speed of the car."""
+    """Return six eigenvalues (1/s), slowest decay first, without the two of the free phase and of the car's speed."""
     values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
     values = values[np.argsort(np.abs(values))[2:]]
     return np.asarray(values[np.lexsort((-values.imag, -values.real))])

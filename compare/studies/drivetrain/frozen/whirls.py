@@ -44,8 +44,10 @@ def _by_exudyn(car: Drivetrain) -> Matrix:
     "Exudyn's linearisation about a whirl has the eigenvalues that follow from the reference's friction law",
     unit="1/s",
     resolution=1e-9,
-    note="In axes that turn with the whirl. Six of the ten eigenvalues; the other four belong to free angles, phase "
-    "and speed. The prediction contains the reference's friction with its whole reaction on the engine. "
+    note="All eigenvalues refer to axes that turn with the whirl. Six of the ten eigenvalues are compared; "
+    "the other four belong to "
+    "free angles, phase and speed. The prediction contains the reference's friction with its whole "
+    "reaction on the engine. "
     "Numerical error: the change with finer rings of the reference's annulus, and rounding.",
 )
 def linearised(engine: Engine) -> Measured:

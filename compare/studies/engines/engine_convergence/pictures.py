@@ -41,7 +41,7 @@ def _draw_orders(found: Data) -> Figure:
     for solver in SOLVERS:
         h, errors = found[f"{solver.name}: steps"], found[f"{solver.name}: sliding"]
         steps.loglog(h, errors, **_marked(solver.look, solver.name))
-        if solver.name != "TrapezoidalIndex2":  # its errors equal those of generalised-α to 2 %
+        if solver.name != "TrapezoidalIndex2":  # its errors equal the errors of generalised-α to 2 %
             _power(steps, h[[0, -1]], (h[-1], errors[-1]), solver.order, f"$h^{solver.order}$")
     steps.set(xlabel=axis("h", "s"), ylabel="error in m, m/s", xlim=(None, 1.3))
     steps.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)

@@ -25,9 +25,11 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
     equation="(1), (10)",
     kind="order",
     resolution=0.1,
-    note="Compared with (10) in polar form at tolerance 3e-14. Error and error estimate of an integrator of order n "
+    note="Errors are relative to (10) in polar form at tolerance 3e-14. Error and error estimate of an "
+    "integrator of order n "
     "have the same order in the step. The step is therefore ~ tolerance^(1/n), the exponent is 1, and the next term "
-    "is smaller by one power of the step. Least squares with this term. Numerical error: 95 % interval from the "
+    "is smaller by one power of the step. The fit is a least-squares fit with this term. Numerical error: 95 "
+    "% interval from the "
     "scatter. Model error: the effect of the term.",
 )
 def sliding(engine: Engine) -> Measured:

@@ -23,7 +23,7 @@ SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
 """Times in s, multiples of every step, so the samples are not interpolated."""
 
 STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
-"""Starts like those of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
+"""Starts like the starts of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
 
 STICKING_UNTIL = 8.0
 """Duration in s."""
@@ -128,7 +128,7 @@ def of_sliding(run: Simulate, **how: Any) -> float:
 
 
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
-    """Return the errors of the events, NaN if their number differs from the exact one."""
+    """Return the errors of the events, NaN if their number is wrong."""
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
 
 

@@ -55,7 +55,7 @@ def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measur
     friction=False,
     note=f"{KNOWN_FROM} If errors are proportional to the tolerance, the ratio is {SAFETY:g}·(1 − 1/{COARSENING:g}) "
     f"= {PROPORTIONAL:g} by construction. If errors do not depend on the tolerance, as in the closed form of stick, "
-    f"it is the allowed rounding over the known rounding, {ROUNDING / theory.KNOWN:g}.",
+    f"the ratio is {ROUNDING / theory.KNOWN:g}, the allowed rounding over the known rounding.",
     each=tuple(theory.PROBLEMS),
 )
 def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:

@@ -30,8 +30,8 @@ SCATTERED_ORDER = (
     "term. Numerical error: 95 % interval from the scatter."
 )
 SETTLED = (
-    " The recorded radius is the mean from 80 to 100 s, before the motion has settled. The law's own change until "
-    "500 s is added to both numbers."
+    " The recorded radius is the mean from 80 to 100 s, before the motion has settled. The change that the "
+    "law itself predicts until 500 s is added to both numbers."
 )
 LAW = (
     "Deviation from the exact motion, recorded and extrapolated to a step of 0. Predicted by our own integration of "
@@ -83,10 +83,7 @@ def axes_stay_off() -> Measured:
     return _orders(0.0, theory.BY_AXIS, ("slip", "disc"))
 
 
-@_of_order(
-    "With Bullet's cone and Chipmunk's joints, which differ from Coulomb's law, a disc's error does not fall with "
-    "the step"
-)
+@_of_order("Bullet's cone and Chipmunk's joints do not converge for a disc")
 def disc_stays_off() -> Measured:
     return _orders(0.0, theory.OFF_FOR_DISCS, ("disc",))
 
@@ -179,7 +176,8 @@ def _as_far_off_as(law: theory.Law, case: str, wanted: tuple[str, ...]) -> Measu
     equation="(6), (7)",
     unit="s",
     resolution=1e-2,
-    note="By our own integration of these laws, smoothed over 1e-5 m/s. Predicted: the delay after F = μN, (7), "
+    note="Measured by our own integration of these laws, smoothed over 1e-5 m/s. Predicted: the delay after F "
+    "= μN, (7), "
     "until the force of (6) violates |F_x|, |F_y| <= μN, or |F_x| + |F_y| <= μN. Numerical error: eight times the "
     "change at an eighth of the smoothing.",
     named={"late by a box": 0, "late by a pyramid": 1},

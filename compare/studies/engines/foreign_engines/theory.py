@@ -40,7 +40,7 @@ FIRST_ORDER = (
 """Settings of order 1 during slip with Coulomb friction, at least for a pin."""
 
 SINGLE_PRECISION = ("Box2D, friction joint", "Rapier, contact", "Jolt, contact")
-"""Settings whose rounding exceeds the error of a step after few halvings."""
+"""Settings whose rounding exceeds the error of a step after a few halvings."""
 
 OFF_FOR_DISCS = ("Bullet, cone", "Chipmunk, pivot joint")
 """Settings with Coulomb friction for a pin, but not for a disc on several points."""
@@ -76,7 +76,7 @@ def recorded() -> tuple[Recording, ...]:
 
 
 def halvings(runs: FloatArray) -> FloatArray:
-    """Return the last of ``runs`` among which each step is half of the previous one, shape (m, columns)."""
+    """Return the last of ``runs`` among which each step is half of the previous step, shape (m, columns)."""
     ratios = runs[1:, STEPS] / runs[:-1, STEPS]
     strange = np.nonzero(np.abs(ratios - 2.0) > HALVED)[0]
     # A series may end with the smallest step of the engine.

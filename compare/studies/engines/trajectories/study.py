@@ -99,7 +99,7 @@ NAMES = {motion: name for name, motion in theory.MOTIONS.items()}
 
 def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
     return {name: (motion,) for name, motion in by_hand.items()} | {
-        f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
+        f"{kind} with random parameters": DRAWN[kind] for kind in drawn
     }
 
 
@@ -302,7 +302,7 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
     return Measured(
         predicted=predicted,
         value=found.value,
-        # An error of the tolerance affects all numbers.
+        # The tolerance scales the error of every number.
         error=found.largest + motion.tolerance * motion.until,
         size=1.0 / motion.system.natural_frequency,
         components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],

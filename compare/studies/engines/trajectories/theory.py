@@ -1,6 +1,6 @@
 """Given motions, ranges of random motions, and integrals over panels of time.
 
-The paper's m, J and C are all one, so an engine may confuse them. Here no two parameters are equal, and random
+The paper's m, J and C are all 1, so an engine may confuse them. Here no two parameters are equal, and random
 motions cover the whole range.
 """
 
@@ -99,7 +99,7 @@ MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
 """Only in the pin that sticks does a point of the contact come to rest, where friction has a kink."""
 
 ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
-"""Motions for an engine that differs from another one only in its contact."""
+"""Motions for an engine that differs from another engine only in its contact."""
 
 SEED = 8
 
@@ -208,7 +208,7 @@ def stick_times(run: Trajectory) -> FloatArray:
 
 
 def as_many(found: FloatArray, as_in: FloatArray) -> FloatArray:
-    """Return ``found``, or NaN if its shape differs from that of ``as_in``."""
+    """Return ``found``, or NaN if its shape differs from the shape of ``as_in``."""
     return found if found.shape == as_in.shape else np.full(as_in.shape, math.nan)
 
 

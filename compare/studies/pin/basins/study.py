@@ -31,7 +31,7 @@ FASTEST = replace(FIG5, disc_speed=3.0)
 """Twice the speed of Fig. 5, with a small basin."""
 
 WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.06))}
-"""Search range of each boundary; the ends on the grid show that no part lies outside."""
+"""Search range of each boundary; the ends on the grid show that no part of it lies outside."""
 
 CELLS, ON_BOUNDARY = 8, 1e-5
 """Resolution and tolerance of the boundary; splines between its points are 1.2e-3 off, half a step of the grid."""
@@ -146,7 +146,7 @@ def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
 
 
 def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
-    """Return x0 and vx0 of the random starts, shape (starts, 2), and the generator for further ones."""
+    """Return x0 and vx0 of the random starts, shape (starts, 2), and the generator for further starts."""
     random = np.random.default_rng(SEED)
     return np.column_stack([random.uniform(low, high, starts) for low, high in PLANE]), random
 
@@ -256,11 +256,11 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
 
 
 @STUDY.claim(
-    "The stable set of the saddle-type orbit separates the starts of the equilibrium from those of the whirl",
+    "The stable set of the saddle-type orbit separates starts that lead to the equilibrium from starts that "
+    "lead to the whirl",
     note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting and cubic splines. Some starts "
-    "end as if they were on the other side of the splines. For those of them that are farthest away, shooting "
-    "determines the side of the saddle's stable set, and the claim fails for a start if that is not the side of its "
-    "end.",
+    "end as if they were on the other side of the splines. For the farthest of these starts, shooting "
+    "determines their side of the saddle's stable set. The claim fails if one of them ends on the other side.",
     basis="reference",
 )
 def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
@@ -278,7 +278,7 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)
     how_far = f", none farther than {off.max():.2g} from it" if off.size else ""
-    # The others match their side of the curve, or are closer to it than the starts for shooting.
+    # All other starts match their side of the curve, or are closer to it than the starts for shooting.
     margins = np.concatenate((as_it_ended, np.ones(len(places) - len(farthest))))
     return answers_of(
         margins,
@@ -329,8 +329,8 @@ def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS
 
 @STUDY.claim(
     "The basin of the self-centred equilibrium shrinks as ω grows",
-    note=f"Is the share of the same {STARTS} random starts at each of {len(SPEEDS)} speeds not larger than at the "
-    "previous one?",
+    note=f"Is the share of the same {STARTS} random starts at each of {len(SPEEDS)} speeds at most the share "
+    f"at the previous speed?",
     basis="independent",
     swept=("disc_speed",),
 )

@@ -27,7 +27,7 @@ UNTIL = 400.0
 
 SAMPLES = 4001
 
-FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
+FURTHER_TURNS = 20  # turns of the whirl after a run; the last turn is averaged
 SLIDING_START, SLIDING_TIMES = (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 100.0, 101)
 """Permanent slip near the whirl (our choice)."""
 
@@ -191,7 +191,7 @@ def whirls(engine: Engine) -> Measured:
         return np.asarray(states[1:-1, :2].mean(axis=0))
 
     found = refined(mean, RUNS_TOLERANCE)
-    multiplier = sorted(abs(value) for value in orbit.multipliers)[-2]  # the largest except that of the phase
+    multiplier = sorted(map(abs, orbit.multipliers))[-2]  # the largest except the multiplier of the phase
     # The remaining transient follows from the largest possible deviation at the end of stick.
     left = float(np.max(np.abs(orbit.state))) * multiplier ** ((UNTIL - 60.0) / orbit.period + FURTHER_TURNS)
     return compared(

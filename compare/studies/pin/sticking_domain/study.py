@@ -35,7 +35,7 @@ CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
 LATEST, REVOLUTIONS = 1.1, 2.0
-"""Duration for a pin outside as a multiple of (7), and turns of a pin inside, two periods of the holding force."""
+"""Duration for a pin outside (9) as multiple of (7); turns for a pin inside (9): two periods of the holding force."""
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
@@ -74,8 +74,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if all missing
-    radii are.
+    ``relative_error`` is the relative error of the radii A. If a radius is missing, the vertex is NaN;
+    its error is infinite if those of all missing radii are, else 0.
     """
 
     def found(values: FloatArray) -> float:
@@ -266,8 +266,9 @@ def _between(
     equation="(9)",
     resolution=1e-2,
     note=f"By bisection to {PRECISION:g} of the radius, with starts that pass the angle of the largest force. "
-    "Relative to (9). Error: the error of the bisection, and the change at a smaller tolerance. Neither shows an "
-    "error below 1e-3, because just outside the radius the slip grows from zero like the power 3/2 of the distance. "
+    "Relative to (9). Error: the error of the bisection, and the change at a smaller tolerance. Both miss an "
+    "error below 1e-3, because just outside the radius the slip grows from zero like the power 3/2 of the "
+    "distance. "
     "Regularised friction hides it: Exudyn's radii have errors of 2e-4 to 6e-4 at tolerances from 1e-6 to 1e-8.",
     swept=("disc_speed",),
 )

@@ -41,7 +41,7 @@ DEVIATION, DEVIATION_TIMES = 1e-3, np.linspace(0.0, 60.0, 301)
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)
-"""ω/k, also below 1, and β/(mk), to compare (14) to (16) with eigenvalues."""
+"""Values of ω/k, also below 1, and of β/(mk), for comparing (14) to (16) with eigenvalues."""
 
 
 def pin_at(speed: float, damping: float = CENTRED.damping) -> PinOnDisc:
@@ -137,8 +137,8 @@ def margin_of_14(pin: PinOnDisc) -> float:
 @STUDY.claim(
     "All roots of (13) have negative real parts exactly where (16) holds",
     equation="(16)",
-    note="Do the condition and the eigenvalues of (12) agree at each grid point? Rounding may leave one in a "
-    "thousand open. Below k, this only concerns the matrix, because no whirl exists there.",
+    note="Do the condition and the eigenvalues of (12) agree at each grid point? Rounding may leave one point "
+    "in a thousand undecided. Below k, this only concerns the matrix, because no whirl exists there.",
     swept=("disc_speed", "damping"),
 )
 def hurwitz() -> Measured:
@@ -170,7 +170,7 @@ def incompatible() -> Measured:
 
 SETTLING = (
     f"Starts on a circle {DISPLACED:g} times as large; state after {DURATION:g} s. Error: the change at a smaller "
-    f"tolerance, and the remaining transient according to its change in the last {DELAY:g} s."
+    f"tolerance, and the remaining transient, judged by its change in the last {DELAY:g} s."
 )
 
 
@@ -245,8 +245,9 @@ def _at_end(engine: Engine, speeds: Sequence[float], which: int, predicted: floa
     "On the circle (11), friction and damping cancel if ω > k, and brake equally if ω < k",
     equation="(11)",
     resolution=1e-5,
-    note="Rate of change of the angular momentum over μN·ρ_c, from a one-sided difference. By (10) it is "
-    "sign(ω − k) − 1. According to the paper, (11) always exists: see the errata. Error: the change at a smaller "
+    note="Rate of change of the angular momentum over μN·ρ_c, from a one-sided difference. By (10) this rate "
+    "is sign(ω − k) − 1. According to the paper, (11) always exists: see the errata. Error: the change at "
+    "a smaller "
     "tolerance and at a larger interval.",
     swept=("disc_speed",),
 )
@@ -341,7 +342,7 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) 
 @STUDY.claim(
     "The whirl is stable if ω > k",
     equation="(16)",
-    note="Is the real part of each measured eigenvalue below zero, except for the one that belongs to the phase?",
+    note="Is the real part of each measured eigenvalue negative, except for the eigenvalue of the phase?",
     friction=False,
     implied_by=eigenvalues,
     swept=("disc_speed", "damping"),

@@ -279,8 +279,8 @@ def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
 
 @STUDY.claim(
     "A pull of 99 % of μN holds a block, and a pull of 101 % moves it, whatever its direction",
-    note=f"Has it moved by less, and by more, than {100.0 * MOVED:g} cm in {HELD:g} s? This is half of its slide "
-    f"at 101 %. Directions: {at_each('heading', HEADINGS)} degrees.",
+    note=f"Has the block moved by more than {100.0 * MOVED:g} cm, half of its slide at 101 %, in {HELD:g} s?"
+    f" Directions: {at_each('heading', HEADINGS)} degrees.",
 )
 def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
 

@@ -33,7 +33,7 @@ EDGES = ((0.0j, 1j), (0.0j, 1.0 + 0.0j), (LEGS + 0.0j, -(1.0 + 1.0j) / math.sqrt
 def path_of(push: Push) -> tuple[complex, complex, complex, complex]:
     """Return start and end of the hand, a point (m) on the edge that faces it, and the normal into the body.
 
-    They are relative to the centre of mass, in the body's first pose.
+    Positions are relative to the centre of mass, in the body's first pose.
     """
     start = complex(push.start_x, push.start_y)
     half = cmath.exp(0.5j * push.turn)

@@ -145,7 +145,7 @@ def work_ratio(push: Push, law: Law) -> float:
 
 
 def work_error(push: Push, law: Law) -> float:
-    """Return the measured work minus the predicted one, in per cent of the latter."""
+    """Return the measured minus the predicted work, in per cent of the predicted work."""
     return 100.0 * (work_ratio(push, law) - 1.0)
 
 

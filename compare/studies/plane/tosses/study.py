@@ -25,7 +25,7 @@ SOURCE = "measurements of S. Pfrommer, M. Halm and M. Posa (2020), see slides.cs
 STUDY = Study.beside(__file__, "tosses", source=SOURCE, seconds=4.0, contact=True)
 
 SIGMAS = 2.0
-"""Standard errors of a mean that a claim allows, and those that exclude a load."""
+"""Numbers of standard errors of a mean that a claim allows, and that exclude a load."""
 
 EXCLUDED = 3.0
 
@@ -111,7 +111,7 @@ def spin() -> Measured:
 
 @cache
 def left_by(load: str, half_side: float, of: Slides | None = None) -> FloatArray:
-    """Return the predicted share of the spin that a load leaves, shape (5,), of these or of all slides."""
+    """Return the predicted share of the spin that a load leaves, shape (5,), for these or for all slides."""
     slides = of or measured()
     share, _ = spins_left(theory.predicted(slides, LOADS[load], half_side).spins, slides["spin_first"])
     return np.asarray(share)
@@ -136,7 +136,7 @@ def excluded() -> Measured:
 
 
 @STUDY.claim(
-    "To first order in the spin, the direction of slip turns at −μ²gLω/v², whatever the distribution of the load",
+    "To first order in the spin, the slip direction turns at −μ²gLω/v², whatever the distribution of the load",
     resolution=1e-6,
     note="Friction across the path over μ²mgLω/v, for a spin of 10⁻⁴·v/L. Model error: its square.",
 )
@@ -157,7 +157,7 @@ def curls() -> Measured:
 # --- Engines
 
 FEWER = 24
-"""Number of simulated slides, those with the fastest spin."""
+"""Number of simulated slides; the slides with the fastest spin are simulated."""
 
 TOLERANCE = 1e-6
 """Tolerance of engines, whose errors are far below the measurement's."""
@@ -221,8 +221,8 @@ def slid(engine: Engine) -> Measurement:
     basis="independent",
     resolution=0.1,
     friction=False,
-    note="As the claim on the measured paths, for the 24 slides with the fastest spin. Error: two standard errors of "
-    "the measurement on as many slides.",
+    note="Measured like the claim on the measured paths, for the 24 slides with the fastest spin. Error: two "
+    "standard errors of the measurement for 24 slides.",
 )
 def turns(engine: Engine) -> Measured:
     share, error = laws_in(measured()) * [[1.0], [SIGMAS * math.sqrt(len(measured()["toss"]) / FEWER)]]
@@ -232,7 +232,7 @@ def turns(engine: Engine) -> Measured:
 def of_engine(
     engine: Engine, numbers: slice, predicted: FloatArray, error: FloatArray, at: dict[str, Any]
 ) -> Measured:
-    """Compare ``numbers`` of the engine with measured ones and their ``error``."""
+    """Compare ``numbers`` of the engine with measured numbers and their ``error``."""
     found, errors = (each[numbers] for each in slid(engine))
     return Measured(predicted=predicted, value=found, error=error + errors, size=1.0, at=at)
 
@@ -261,7 +261,7 @@ def decelerates(engine: Engine) -> Measured:
     resolution=0.1,
     friction=False,
     note="Share of the first spin that is left when the speed has fallen, for the 24 slides with the fastest spin. "
-    "The load is even on the corners. Error: two standard errors of the measurement.",
+    "The corners share the load equally. Error: two standard errors of the measurement.",
 )
 def spins(engine: Engine) -> Measured:
     share, error = spins_left(fastest()["spins"], fastest()["spin_first"])

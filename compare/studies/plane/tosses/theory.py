@@ -153,7 +153,8 @@ class Motion(NamedTuple):
 def predicted(slides: Slides, load: Load, half_side: float, slope: float = 0.0) -> Motion:
     """Return the motion of the slides under Coulomb's law from their first speeds and spins.
 
-    ``half_side`` (m) is that of the square of contact, and ``slope`` (rad) that of the board down to the left.
+    ``half_side`` (m) belongs to the square of contact, and ``slope`` (rad) is the slope of the board down to the
+    left.
     """
     mu = slides.of_constant("mean_mu")
     shift = mu * slides["height"]

@@ -10,7 +10,7 @@ from reference_model.systems import ComplexArray, FloatArray
 
 SQUARINGS = 40
 VANISHED, GROWN = 1e-6, 1e6
-"""Largest entry of a power that has vanished, and of one that has grown."""
+"""Entries of a power below which it has vanished, and above which it has grown."""
 
 
 # Array creation for each shape would be compiled separately.

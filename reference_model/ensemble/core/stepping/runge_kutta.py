@@ -34,7 +34,7 @@ The error estimate would accept errors of a hundred tolerances.
 """
 
 LOCAL = 0.1
-"""Tolerance of a step as a share of the motion's."""
+"""Tolerance of a step as a share of the motion's tolerance."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
 """Bounds on the ratio of successive steps, and safety factor."""
@@ -95,7 +95,7 @@ def _packed(context: Any, builder: Any, signature: Any, values: list[Any]) -> An
 def step(
     rates: Callable[[Tuple, Constants], Tuple], law: Constants, y: Tuple, k1: Tuple, h: float
 ) -> tuple[Tuple, Tuple, Tuple]:
-    """Return the mean rates over a step of ``h`` from ``y``, and their differences from those of lower order.
+    """Return the mean rates over a step of ``h`` from ``y``, and their differences from the rates of lower order.
 
     ``rates(y, law)`` returns the rates of ``y``, perhaps followed by other numbers. ``k1`` are the rates at ``y``.
     """
