@@ -216,14 +216,14 @@ def begun(y: Unknowns, n: tuple[float, float, float], law: Law) -> tuple[float, 
 
     The last three results are the components of turning.
     """
-    at_first = _towards(y, n, 0.0, law)
+    at_first = _towards(y, n, 0.0, 0.0, law)
     first = max(at_first[0] * n[0] + at_first[1] * n[1] + at_first[2] * n[2], 0.0)
-    later = _towards(y, n, MOMENT, law)
+    later = _towards(y, n, MOMENT, first * MOMENT, law)
     matrix, change = np.zeros((3, 3)), np.zeros(3)
     for i in range(3):
         change[i] = (later[i] - at_first[i]) / MOMENT
         axis = (n[0] + TURN * (i == 0), n[1] + TURN * (i == 1), n[2] + TURN * (i == 2))
-        turned = _towards(y, axis, 0.0, law)
+        turned = _towards(y, axis, 0.0, 0.0, law)
         for j in range(3):
             matrix[j, i] = (at_first[j] - turned[j]) / TURN
     system = np.zeros((3, 3))
@@ -249,16 +249,15 @@ def begun(y: Unknowns, n: tuple[float, float, float], law: Law) -> tuple[float, 
 
 @part
 def _towards(
-    y: Unknowns, n: tuple[float, float, float], delay: float, law: Law
+    y: Unknowns, n: tuple[float, float, float], delay: float, speed: float, law: Law
 ) -> tuple[float, float, float, float, float, float]:
-    """Return the rates of the slip in the direction ``n`` after ``delay`` without slip."""
+    """Return the rates of the slip with this speed in the direction ``n``, ``delay`` after the body was at rest."""
     x, z, r, angle = drift(y, law)
     r, angle = y[4] + delay * r, y[5] + delay * angle
+    slip = max(speed, LEAST_SLIP)
     if law.point == CENTRE or law.sense != 0.0:
-        r = LEAST_SLIP * n[2]
-    return growth(
-        y[0] + delay * x, y[1] + delay * z, LEAST_SLIP * n[0], LEAST_SLIP * n[1], r, angle, law,
-    )  # fmt: skip
+        r = slip * n[2]
+    return growth(y[0] + delay * x, y[1] + delay * z, slip * n[0], slip * n[1], r, angle, law)
 
 
 @part
