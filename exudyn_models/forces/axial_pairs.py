@@ -298,6 +298,16 @@ class AxialStick(RowLaw):
         """Return the magnitude of the moment in N m."""
         return self.mean_radius * self.factors.friction_force(t, 0.0, self.mean_radius * abs(spin), spin)
 
+    def sliding_slope(self, t: float, spin: float) -> float:
+        """Return the derivative of the magnitude of the moment by the relative spin, in N m s."""
+        return self.slope_of(self.factors, t, spin)
+
+    def slope_of(self, factors: LoadAndCoefficient, t: float, spin: float) -> float:
+        """Return ``sliding_slope`` under these ``factors``."""
+        radius = self.mean_radius
+        _, by_speed, by_spin = factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
+        return radius * float(by_speed * math.copysign(radius, spin) + by_spin)
+
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest moments in N m of a locked contact against sliding forward and backward.
 
@@ -341,9 +351,7 @@ class AxialStick(RowLaw):
         if self.factors.depends_on_motion and self.slides:
             spin, direction = float(gradient @ q_t), int(self.mode or 0)
             if direction * spin > 0.0:  # ``moment`` is constant beyond zero slip
-                radius = self.mean_radius
-                _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
-                slope = direction * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
+                slope = direction * self.sliding_slope(t, spin)
         return velocity_factor * slope * np.outer(gradient, gradient)
 
 

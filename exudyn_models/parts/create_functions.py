@@ -32,6 +32,8 @@ def MainSystemCreateRingFriction(
     thermalNode: ThermalNode | None = None,
     masterRotation: Any = None,
     discRotation: Any = None,
+    loadGain: float | Sequence[float] = 0.0,
+    loadPart: Any = None,
 ) -> RingFriction:
     """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
 
@@ -56,6 +58,8 @@ def MainSystemCreateRingFriction(
         thermal_node=thermalNode,
         master_rotation=masterRotation,
         disc_rotation=discRotation,
+        load_gain=loadGain,
+        load_part=loadPart,
     )
 
 

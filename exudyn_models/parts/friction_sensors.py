@@ -9,7 +9,7 @@ from typing import Any, Literal, cast, get_args
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import constant_law, on_one_axis
+from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, RowLaw, constant_law, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
@@ -68,6 +68,22 @@ class RingFriction:
     def effective_radius(self) -> float:
         """Ratio of moment to friction force in m of a disc that only turns: M = μN·r, of all plates."""
         return mean_radius(self._contact.factors.geometry)
+
+    @property
+    def source(self) -> tuple[RowLaw | None, Callable[[], float]] | None:
+        """Law and present moment in N m for a contact that this one loads; None unless both turn on one axis."""
+        contact, stick, data = self._contact, self._contact.stick, self.mbs.systemData
+        if contact.kinds not in ON_ONE_AXIS:
+            return None
+
+        def present() -> float:
+            t = data.GetTime(CURRENT)
+            q, q_t = (values.tolist() for values in motion_of(self.mbs, contact, self.item, CURRENT))
+            if stick is not None:
+                return stick.moment(t, stick.slip(q, q_t))
+            return float(contact.functions["force"](self.mbs, t, 0, q, q_t)[-1])
+
+        return stick, present
 
     def change(
         self,

@@ -4,13 +4,14 @@ A coupling is a massless ``ObjectGenericODE2`` over the nodes of its rotors. Its
 this object.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
 import exudyn as exu
 import numpy as np
 
+from exudyn_models.forces.axial_pairs import RowLaw
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.solver.contacts import Coupling, motion_of, register
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
@@ -70,6 +71,12 @@ class RotorCoupling:
             ]
 
         return self.mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=value, **options))
+
+    @property
+    def source(self) -> tuple[RowLaw | None, Callable[[], float]]:
+        """Law and present moment in N m for a contact that this part loads."""
+        law = None if isinstance(self._law, Backlash) else self._law
+        return law, lambda: self._law.moment_and_friction(*self._motion())[0]
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the lost power in W, in the form that ``add_energy_balance`` expects."""

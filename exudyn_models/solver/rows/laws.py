@@ -102,8 +102,48 @@ class OneWayLaw(RotaryLaw):
         return 0.0
 
 
+class GrowingLimit:
+    """Limit that grows with a moment T; ``place`` is that of T among the loads of the model."""
+
+    place: int
+    static_ratio: float
+
+    @property
+    def load(self) -> float:
+        """Present moment T in N m."""
+        raise NotImplementedError
+
+    def limit(self, load: float, direction: int) -> float:
+        """Return the largest friction in N m against a slip in a direction, ±1, at a moment T in N m."""
+        raise NotImplementedError
+
+    def slope_at(self, load: float, direction: int) -> float:
+        """Return the derivative by T of the friction against a slip in a direction, ±1, or 0 without slip."""
+        raise NotImplementedError
+
+    def load_at(self, own: float | None) -> float:
+        """Return the present T of a contact at rest; ``own`` is the part in its group at rest, or None."""
+        raise NotImplementedError
+
+    def limits_at(self, load: float) -> tuple[float, float]:
+        """Return the limits at rest in N m at a moment T."""
+        raise NotImplementedError
+
+    def rest(self, t: float) -> None:
+        """Evaluate load and coefficient at rest."""
+
+    def shares(self, force: float, load: float) -> tuple[Sequence[float], Sequence[FloatArray]]:
+        """Return the shares of both limits that a force at rest needs, and their slopes in force and in T."""
+        values, slopes = list[float](), list[FloatArray]()
+        for limit, way in zip(self.limits_at(load), (1, -1), strict=True):
+            values.append(-way * force / limit)
+            by_load = self.static_ratio * self.slope_at(load, way)
+            slopes.append(np.array([-way / limit, force / limit**2 * by_load]))
+        return values, slopes
+
+
 @dataclass(eq=False)
-class MeshLaw(RotaryLaw):
+class MeshLaw(GrowingLimit, RotaryLaw):
     """Friction of a mesh with the constraint ``item``, whose gradient is ``constraint``, shape (n,).
 
     ``preload`` in N m and ``share`` determine its limit, always zero if the mesh is ``lossless``. ``shifts`` returns
@@ -162,24 +202,17 @@ class MeshLaw(RotaryLaw):
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest friction in N m against sliding forward and backward."""
-        return self._limits_at(self._load)
+        return self.limits_at(self._load)
 
-    def _limits_at(self, load: float) -> tuple[float, float]:
+    def load_at(self, own: float | None) -> float:
+        """Return the present T by the forces of constraints."""
+        return self._load
+
+    def limits_at(self, load: float) -> tuple[float, float]:
+        """Return the limits at rest in N m at a moment T."""
         self.largest = max(self.largest, self.preload + abs(load))
         least = max(LEAST, FREE * self.largest)
         return max(self.limit(load, 1), least), max(self.limit(load, -1), least)
-
-    def shares(self, force: float, change: float) -> tuple[Sequence[float], Sequence[FloatArray]]:
-        """Return the shares of both limits that a force at rest needs, and their slopes in force and in T.
-
-        ``change`` is added to the present moment T.
-        """
-        load = self._load + change
-        values, slopes = list[float](), list[FloatArray]()
-        for limit, way in zip(self._limits_at(load), (1, -1), strict=True):
-            values.append(-way * force / limit)
-            slopes.append(np.array([-way / limit, force / limit**2 * self.slope_at(load, way)]))
-        return values, slopes
 
     def moment(self, t: float, spin: float) -> float:
         """Return the friction in N m in slip."""

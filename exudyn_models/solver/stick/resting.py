@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.solver.items import CURRENT
-from exudyn_models.solver.rows.laws import MeshLaw
+from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw
 from exudyn_models.solver.stick.complementarity import independent_rows
 from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
@@ -53,19 +53,28 @@ class Group:
         This share is as small as possible, or below ``enough``.
         """
         held = -self.mbs.systemData.GetAECoordinates()[self.places]
-        limits = np.array([contact.capacities(t) for contact in self.contacts])
+        limits = [
+            (0.0, 0.0) if isinstance(contact.stick, GrowingLimit) else contact.capacities(t)
+            for contact in self.contacts
+        ]
         start = np.concatenate((held, np.zeros(len(self.by_chosen))))
+
+        for contact in self.contacts:
+            if isinstance(contact.stick, GrowingLimit):
+                contact.stick.rest(t)
 
         def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:
             forces = start + self._undetermined @ x
             values, slopes = list[float](), list[FloatArray]()
             for contact, rows, limit in zip(self.contacts, self.blocks, limits, strict=True):
                 by_x, law = self._undetermined[rows], contact.stick
-                if isinstance(law, MeshLaw):
-                    by_x = np.vstack((by_x, self.to_loads[law.place] @ self._undetermined))
-                    shares_of = law.shares(float(forces[rows[0]]), float(by_x[1] @ x))
+                if isinstance(law, GrowingLimit):
+                    to_load = self.to_loads[law.place]
+                    by_x = np.vstack((by_x, to_load @ self._undetermined))
+                    load = law.load_at(float(to_load @ start) if to_load.any() else None)
+                    shares_of = law.shares(float(forces[rows[0]]), load + float(by_x[1] @ x))
                 else:
-                    shares_of = contact.shares(forces[rows], limit)
+                    shares_of = contact.shares(forces[rows], np.array(limit))
                 values += shares_of[0]
                 slopes += [slope @ by_x for slope in shares_of[1]]
             return np.array(values), np.array(slopes)

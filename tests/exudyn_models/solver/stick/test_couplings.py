@@ -6,7 +6,7 @@ from itertools import pairwise
 import exudyn as exu
 import numpy as np
 import pytest
-from exact_couplings import Couplings, Friction, Mesh, OneWay, exact_motion_of
+from exact_couplings import Couplings, Friction, Loaded, Mesh, OneWay, exact_motion_of
 from free_bodies import changes_of, drive, items, new_model, planar_body, rate_of, rotor, settings_of
 from scipy.optimize import brentq
 from test_random_trains import locks, random_moment
@@ -28,13 +28,15 @@ TIMES, SPEEDS = 1e-5, 1e-4  # s, rad/s
 class RandomTrain:
     """A random tree of rotors: its exact description, and functions that add the same parts to a model."""
 
-    def __init__(self, seed):
+    def __init__(self, seed, loaded=False):
         self.rng = rng = np.random.default_rng(seed)
-        self.count = int(rng.integers(2, 9))
-        self.rows, self.adds, self.grounded = [], [], False
+        self.count = int(rng.integers(2, 5 if loaded else 9))
+        self.rows, self.adds, self.parts, self.grounded = [], [], [], False
         self.speeds, k = [float(rng.choice([0.0, 2.0, -1.5]))], 1
         while k < self.count:
             kinds = [self.clutch, self.one_way, self.gear]
+            if loaded and self.rows:
+                kinds += [self.loaded] * 3
             if k + 1 < self.count:
                 kinds += [self.planetary, self.differential]
             k += kinds[rng.integers(len(kinds))](int(rng.integers(k)), k)
@@ -66,6 +68,19 @@ class RandomTrain:
             "static_ratio": ratio,
         }
         self.adds.append(lambda mbs, at: add_ring_friction(mbs, at(j), at(k), **law))
+        return 1
+
+    def loaded(self, j, k):
+        """Add a clutch that a part before it loads."""
+        self.speeds.append(self.rng.choice([self.speeds[j], 0.0, 3.0]))
+        capacity, gain, ratio = self.rng.uniform((0.0, 0.1, 1.0), (3.0, 1.0, 1.5)).tolist()
+        part = int(self.rng.integers(len(self.rows)))
+        self.rows.append(Loaded(self.weights([(j, -1.0), (k, 1.0)]), capacity, 0.5 * gain, part, ratio))
+        law = {"contact_radius": 1.0, "friction_coefficient": 0.5, "normal_load": 2.0 * capacity}
+        law |= {"load_gain": gain, "static_ratio": ratio}
+        self.adds.append(
+            lambda mbs, at: add_ring_friction(mbs, at(j), at(k), **law, load_part=self.parts[part])
+        )
         return 1
 
     def one_way(self, j, k):
@@ -121,7 +136,10 @@ def check(random, solver):
     nodes = [rotor(mbs, *pair) for pair in zip(train.inertias, train.speeds, strict=True)]
     for node, moment in zip(nodes, train.moments, strict=True):
         drive(mbs, node, lambda t, moment=moment: float(moment(t)))
-    parts = [int(add(mbs, lambda k: None if k is None else nodes[k]).item) for add in random.adds]
+    random.parts = []
+    for add in random.adds:
+        random.parts.append(add(mbs, lambda k: None if k is None else nodes[k]))
+    parts = [int(part.item) for part in random.parts]
     changes = changes_of(mbs, END, STEP, solver, breaks=train.breaks())
     kinds, times = locks([(time, parts.index(item), *modes) for time, item, *modes in changes])
     right_kinds, right_times = locks([(one.time, one.link, one.before, one.after) for one in exact])
@@ -133,6 +151,12 @@ def check(random, solver):
 
 SEEDS = (2, 5, 7, 10, 13, 17, 22, 33)
 """At the start of 10, a clutch slips forward and backward within one step."""
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_random_trains_with_loads_by_moments_of_parts_move_exactly(solver):
+    """In 32 and 44 a sliding differential loads a clutch on one of its sides."""
+    assert sum(check(RandomTrain(seed, loaded=True), solver) for seed in (1, 4, 9, 32, 44, 60)) > 9
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)
