@@ -28,6 +28,7 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.parts.rotational.couplings import RotorCoupling
 from exudyn_models.parts.rotational.gears import add_differential, add_gear, add_planetary
 from exudyn_models.parts.rotational.one_way_clutch import add_one_way_clutch
+from exudyn_models.parts.rotational.sliders import add_slider_friction, add_tyre
 from exudyn_models.parts.rotational.torsional_spring import add_torsional_spring
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
 from exudyn_models.solver.linear.locked_state import ContactState, Linearisation, linearise
@@ -55,8 +56,10 @@ __all__ = [
     "add_planetary",
     "add_radial_support",
     "add_ring_friction",
+    "add_slider_friction",
     "add_thermal_node",
     "add_torsional_spring",
+    "add_tyre",
     "build_drivetrain",
     "build_model",
     "eigenvalues",

@@ -43,7 +43,7 @@ from exudyn_models.forces.friction_laws import Contact as Geometry
 from exudyn_models.forces.laws.places import places_in, ring_places, table_of
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import Kinds
+from exudyn_models.forces.slip_kinematics import GROUND, Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_friction_connector, rotor_markers
 from exudyn_models.parts.friction_sensors import RingFriction
@@ -155,7 +155,7 @@ def add_ring_friction(
     coefficient = _with_temperature(friction_coefficient, thermal_node)
     factors = LoadAndCoefficient(geometry, coefficient, normal_load, static_ratio, plates)
     sides = checked_sides(mbs, master_node, disc_node, rotations=(master_rotation, disc_rotation))
-    growth = _checked_growth(mbs, load_gain, load_part)
+    growth = checked_growth(mbs, load_gain, load_part)
     return _add_friction(mbs, sides, factors, regularisation is None, thermal_node, growth)
 
 
@@ -167,7 +167,7 @@ def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None
     return thermal_node.with_temperature(coefficient)
 
 
-def _checked_growth(mbs: Any, gain: float | Sequence[float], part: Any) -> dict[str, Any]:
+def checked_growth(mbs: Any, gain: float | Sequence[float], part: Any) -> dict[str, Any]:
     """Return the arguments of a law whose load grows with a moment, or none."""
     gains = finite_numbers("load_gain", gain)
     if gains.shape not in ((), (2,)) or (part is not None and gains.min() < 0.0):
@@ -182,6 +182,13 @@ def _checked_growth(mbs: Any, gain: float | Sequence[float], part: Any) -> dict[
         )
     law, present = part.source
     return growth | {"part": law, "present": present}
+
+
+def law_on_axis(growth: dict[str, Any]) -> type[AxialStick]:
+    """Return the law of friction on one axis, whose load may grow with a moment."""
+    if "part" in growth:
+        return MomentLoadedStick
+    return SelfEnergisingStick if growth else AxialStick
 
 
 def _add_friction(
@@ -240,14 +247,15 @@ def _sticking(
     growth: dict[str, Any],
 ) -> Contact:
     ratio, factors = factors.static_ratio, factors.without_peak()
+    options: dict[str, Any] = {"reference": reference, "static_ratio": ratio}
     stick: AxialStick
     if pins and kinds not in ON_ONE_AXIS:
         stick = PointSticks.at(pins, kinds, reference, factors, ratio)
+    elif kinds in ON_ONE_AXIS:
+        weights = np.array([1.0] if kinds[0] == GROUND else [-1.0, 1.0])
+        stick = law_on_axis(growth)(kinds, factors, weights=weights, **options, **growth)
     else:
-        law: type[AxialStick] = AxialStick if kinds in ON_ONE_AXIS else PlanarStick
-        if growth:
-            law = MomentLoadedStick if "part" in growth else SelfEnergisingStick
-        stick = law(kinds, factors, reference=reference, static_ratio=ratio, **growth)
+        stick = PlanarStick(kinds, factors, **options)
     return Contact(
         kinds, reference, factors, {"force": stick.force, "jacobian": stick.jacobian}, stick, False
     )

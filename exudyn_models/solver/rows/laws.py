@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import FREE, Mode, RowLaw
-from exudyn_models.forces.slip_kinematics import Floats
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -40,44 +39,18 @@ Share = Callable[[float, bool], float]
 """Function of |T| in N m, and of whether the first shaft drives, for the share of |T| that friction has."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, kw_only=True)
 class RotaryLaw(RowLaw):
-    """Law of rotors with constant ``weights`` of their speeds in the slip, shape (n,), in a model with ``data``."""
+    """Law of a part between rotors in a model with ``data``."""
 
-    weights: FloatArray
     data: Any
 
     def __post_init__(self) -> None:
         self.reference = np.zeros(len(self.weights))
 
-    def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return the weights."""
-        weights: Floats = self.weights.tolist()
-        return weights
-
     def multipliers(self) -> FloatArray:
         """Return the present forces of all constraints, shape (m,)."""
         return np.asarray(self.data.GetAECoordinates(), float)
-
-    def twist(self, q: Floats | FloatArray) -> float:
-        """Return the angle of the slip in rad; ``q`` excludes reference values."""
-        return float(self.weights @ q)
-
-    def mode_at(self, twist: float, rate: float) -> Mode:
-        """Return the mode that a sensor shows."""
-        return self.visible_mode
-
-    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
-        """Return the moment and the friction in N m that sensors show."""
-        return float(self.held_forces()[0]) if self.mode == Mode.LOCKED else 0.0, 0.0
-
-    def lost_power(self, twist: float, rate: float) -> float:
-        """Return the lost power in W."""
-        return -self.moment_and_friction(twist, rate)[1] * rate
-
-    def energy(self, twist: float) -> float:
-        """Return the stored energy in J."""
-        return 0.0
 
     def check_running(self) -> None:
         """Raise ``ValueError`` unless ``solve_dynamic`` switches modes."""
@@ -195,10 +168,10 @@ class MeshLaw(GrowingLimit, RotaryLaw):
             return -float(self.multipliers()[self.data.GetObjectLTGAE(self.item)[0]])
         return float(self.meshes.now()[0][self.place])
 
-    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
+    def moment_and_friction(self, t: float, twist: float, rate: float) -> tuple[float, float]:
         """Return T and the friction in N m."""
         locked = self.mode == Mode.LOCKED
-        return self.load, float(self.held_forces()[0]) if locked else self.moment(0.0, rate)
+        return self.load, float(self.held_forces()[0]) if locked else self.moment(t, rate)
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest friction in N m against sliding forward and backward."""
