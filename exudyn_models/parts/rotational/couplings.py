@@ -7,6 +7,7 @@ this object.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import accumulate
 from typing import Any, Literal, NamedTuple, get_args
 
 import exudyn as exu
@@ -142,27 +143,32 @@ def _freedom_of(mbs: Any, given: Any) -> Freedom | None:
     return Freedom(int(node), range(allowed)[coordinate], len(reference), float(reference[coordinate]))
 
 
+def nodes_of(freedoms: Sequence[Freedom | None]) -> tuple[Any, ...]:
+    """Return the nodes of some freedoms."""
+    nodes = dict.fromkeys(freedom.node for freedom in freedoms if freedom is not None)
+    return tuple(exu.NodeIndex(node) for node in nodes)  # type: ignore[attr-defined]
+
+
+def places_of(freedoms: Sequence[Freedom]) -> list[int]:
+    """Return the places of some freedoms among all coordinates of their nodes."""
+    sizes = {freedom.node: freedom.size for freedom in freedoms}
+    starts = dict(zip(sizes, accumulate(sizes.values(), initial=0), strict=False))
+    return [starts[freedom.node] + freedom.coordinate for freedom in freedoms]
+
+
 def weights_of(freedoms: Sequence[Freedom | None], weights: Sequence[float]) -> FloatArray:
     """Return the weights of all coordinates of the nodes of some freedoms."""
-    nodes = _nodes_of(freedoms)
-    starts = dict(zip(nodes, np.cumsum([0, *nodes.values()]).tolist(), strict=False))
-    found = np.zeros(sum(nodes.values()))
-    for freedom, weight in zip(freedoms, weights, strict=True):
-        if freedom is not None:
-            found[starts[freedom.node] + freedom.coordinate] = weight
+    own = [one for one in freedoms if one is not None]
+    found = np.zeros(sum({freedom.node: freedom.size for freedom in own}.values()))
+    found[places_of(own)] = [weight for one, weight in zip(freedoms, weights, strict=True) if one is not None]
     return found
-
-
-def _nodes_of(freedoms: Sequence[Freedom | None]) -> dict[int, int]:
-    """Return the numbers of coordinates of the nodes of some freedoms."""
-    return {freedom.node: freedom.size for freedom in freedoms if freedom is not None}
 
 
 def add_coupling(mbs: Any, freedoms: Sequence[Freedom | None], law: RowLaw) -> RotorCoupling:
     """Add a coupling with a law to a model; return its handle."""
     coupling = Coupling(stick=law)
     register(mbs, coupling)
-    nodes = tuple(exu.NodeIndex(node) for node in _nodes_of(freedoms))  # type: ignore[attr-defined]
+    nodes = nodes_of(freedoms)
     item = add_connector(mbs, nodes, law.force, law.jacobian, coupling.name)
     gradients = [] if isinstance(law, Backlash) else [law.weights]
     if isinstance(law, MeshLaw):
