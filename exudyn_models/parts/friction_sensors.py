@@ -205,7 +205,11 @@ class RingFriction:
             spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
             return moment * (spin if spin > creep else spin * spin / creep)
 
+        stick = contact.stick if on_axis else None
+
         def of_any(t: float) -> float:
+            if stick is not None and not stick.slides:
+                return 0.0
             values = get_velocities(CURRENT, False)
             velocities = values[first].tolist()
             if second:
