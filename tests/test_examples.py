@@ -292,3 +292,68 @@ def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tm
                 compared += 1
     assert compared >= 2
     assert set(tmp_path.iterdir()) == given, "a run has left files"
+
+
+def test_a_limited_slip_differential_on_ice_moves_exactly():
+    """The left tyre needs T·(1 − 2·ramp) − preload; all speeds are quadratic before and after it spins."""
+    example = run("15_limited_slip_differential.py")
+    car, wheel, case, radius, rise, until = (
+        example[name] for name in ("CAR", "WHEEL", "CASE", "RADIUS", "TORQUE", "UNTIL")
+    )
+    ice, whole = example["ICE"] * example["LOAD"] * radius, case + 2.0 * wheel + car * radius**2
+    for name, start in example["starts"].items():
+        preload, ramp = example["DIFFERENTIALS"][name]
+        needed = ((1.0 - case / whole) / 2.0 * (1.0 - 2.0 * ramp) - wheel / whole) * rise
+        spins = (ice + preload) / needed
+        system = np.array(
+            [
+                [case, 0.0, 0.0, 2.0],
+                [0.0, wheel, 0.0, 2.0 * ramp - 1.0],
+                [0.0, 0.0, wheel + car * radius**2, -1.0 - 2.0 * ramp],
+                [-2.0, 1.0, 1.0, 0.0],
+            ]
+        )
+        constant = np.linalg.solve(system, [0.0, -ice - preload, preload + ice, 0.0])[:3]
+        rising = np.linalg.solve(system, [rise, 0.0, 0.0, 0.0])[:3]
+        exact = rise / whole * spins**2 / 2.0 + constant * (until - spins)
+        exact += rising * (until**2 - spins**2) / 2.0
+        assert [change.time for change in start.changes] == pytest.approx(
+            [spins] * len(start.changes), abs=1e-9
+        )
+        assert [start.end(part) for part in ("case", "left", "right")] == pytest.approx(exact, abs=1e-7)
+        balance = start.read_balance()
+        assert np.max(np.abs(balance.residual)) < 1e-6 * balance.turnover
+
+
+def test_a_clutch_judders_as_its_eigenvalues_and_scipy_say():
+    example = run("16_clutch_judder.py")
+    inertias = np.array([example[name] for name in ("ENGINE", "DISC", "CAR")])
+    load, radius, stiffness, damping = (example[name] for name in ("LOAD", "RADIUS", "STIFFNESS", "DAMPING"))
+    shaft, clutch = np.outer([0.0, 1.0, -1.0], [0.0, 1.0, -1.0]), np.outer([1.0, -1.0, 0.0], [1.0, -1.0, 0.0])
+    governor = np.diag([example["GOVERNOR"], 0.0, 0.0])
+    for row, column in ((0, 0), (4, 10), (15, 39)):
+        slip, at = example["SLIPS"][column], example["DAMPINGS"][row]
+        slope = -load * radius**2 * 0.05 / 0.6 * np.exp(-radius * slip / 0.6)
+        lower = -np.hstack((stiffness * shaft, at * shaft + slope * clutch + governor)) / inertias[:, None]
+        values = np.linalg.eigvals(np.vstack((np.eye(3, 6, 3), lower)))
+        vibrations = values[np.abs(values.imag) > 1.0]
+        assert example["ratios"][row, column] == pytest.approx(
+            np.min(-vibrations.real / np.abs(vibrations)), rel=1e-5
+        )
+
+    def rates(t, state):
+        (twist, engine, disc, car) = state
+        moment = radius * load * example["coefficient"](radius * (engine - disc))
+        torque = example["TORQUE"] + example["GOVERNOR"] * (example["SPEED"] - engine)
+        held = stiffness * twist + damping * (disc - car)
+        return disc - car, *(np.array([torque - moment, moment - held, held]) / inertias)
+
+    def sticks(t, state):
+        return state[1] - state[2]
+
+    sticks.terminal = True
+    speed = example["SPEED"]
+    start = [radius * load * example["coefficient"](radius * speed) / stiffness, speed, 0.0, 0.0]
+    found = solve_ivp(rates, (0.0, example["UNTIL"]), start, events=sticks, rtol=1e-11, atol=1e-11)
+    assert example["changes"][0].time == pytest.approx(found.t[-1], abs=1e-3)
+    assert [int(change.after) for change in example["changes"]] == [0, -1, 0, -1, 0]
