@@ -1,8 +1,8 @@
 """Measure the cost of exact stick and of an energy balance in chains of rotors.
 
-Run ``python benchmarks/drivetrain_speed.py``. Each number is a ratio of two runs of one process, the fastest of several
-of each. Chains have rotors of 1 kg m² with a clutch between each two and a brake, and moments that let the contacts
-stick and slip.
+Run ``python benchmarks/drivetrain_speed.py``. Each number is a ratio of two runs of one process, the fastest of
+several of each. Chains have rotors of 1 kg m² with a clutch between each two and a brake, and moments that let the
+contacts stick and slip.
 """
 
 import math

@@ -21,7 +21,7 @@ from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, OneWayLaw
 from exudyn_models.solver.rows.moment_loads import Loads
 from exudyn_models.solver.stick.complementarity import rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.resting import Resting
+from exudyn_models.solver.stick.resting import Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
@@ -77,6 +77,7 @@ class ModeChoice:
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
+        self._line: Line | None = None
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
@@ -152,6 +153,10 @@ class ModeChoice:
         self._rows = slips.rows[firsts]
         self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
         self._offsets = 1.0 - np.abs(self._directions)
+        simple = not (self._varying or self._springs or self._resting.groups)
+        self._line = (
+            Line(self._rows, self._directions, self._resting, self._limits, self._data) if simple else None
+        )
         self.survey(t)
         self._slides.survey()
         self.end(())
@@ -332,6 +337,10 @@ class ModeChoice:
         They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
         rest, or ±1 without load or coefficient.
         """
+        if self._line is not None:
+            now = self._line.margins(self._data)
+            if (now[self._resting.alone] >= NEAR).all():
+                return now
         springs = [spring.margin(self._mbs, t) for spring in self._springs]
         return np.append(self._margins_of_contacts(t), springs)
 

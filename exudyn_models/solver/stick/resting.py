@@ -132,9 +132,12 @@ class Resting:
         links = np.zeros((len(resting), len(resting)))
         for i, shares in zip(others, by_chosen, strict=True):
             links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares)]]] = 1.0
-        count, of_group = len(resting), np.arange(len(resting))
-        if others:
-            count, of_group = connected_components(links, directed=False)
+        alone = not others and not any(isinstance(contacts[i], PlanarContact) for i in resting)
+        if alone:
+            self.alone = list(resting)
+        count, of_group = (
+            (0, np.zeros(len(resting))) if alone else connected_components(links, directed=False)
+        )
         of_first, of_rest = of_group[owner[chosen]], of_group[owner[others]]
         for number in range(count):
             own, first, rest = (np.flatnonzero(group == number) for group in (of_group, of_first, of_rest))
@@ -175,6 +178,32 @@ class Resting:
             if found.intersection(group.contacts):
                 found.update(group.contacts)
         return found
+
+
+class Line:
+    """Margins of contacts with constant limits that share no load: the least of two lines in the model's unknowns."""
+
+    def __init__(
+        self, rows: FloatArray, directions: FloatArray, resting: Resting, limits: FloatArray, data: Any
+    ) -> None:
+        count, size = rows.shape
+        slopes = np.zeros((2, count, size + data.AEsize()))
+        slopes[:, :, :size], self._constants = (
+            directions[:, None] * rows,
+            np.tile(1.0 - np.abs(directions), (2, 1)),
+        )
+        alone, places = resting.alone, size + resting.alone_places
+        largest = limits[alone].max(axis=1)
+        for side, sign in enumerate((1.0, -1.0)):
+            self._constants[side, alone] = limits[alone, 1 - side] / largest
+            slopes[side, alone, places] = sign / largest
+        self._slopes = slopes
+
+    def margins(self, data: Any) -> FloatArray:
+        """Return the present margins, shape (contacts,)."""
+        velocities, forces = data.GetODE2Coordinates_t(CURRENT, False), data.GetAECoordinates(CURRENT, False)
+        both = self._constants + self._slopes @ np.concatenate((velocities, forces))
+        return np.asarray(np.minimum(both[0], both[1]))
 
 
 def least_maximum(
