@@ -1,7 +1,7 @@
 """An eight-speed automatic shifts from third to fourth gear under load, and its converter locks up.
 
-Its four planetary gears, two brakes and three clutches have the layout and the teeth of ZF's 8HP70. Brakes and clutches
-stick exactly, and an energy balance checks the run. Pass a path to save a figure.
+Its four planetary gears, two brakes and three clutches have the layout and the teeth of ZF's 8HP70. Brakes and
+clutches stick exactly, and an energy balance checks the run. Pass a path to save a figure.
 """
 
 import sys

@@ -5,7 +5,7 @@ by a method that lets the package's parts forget the numbers of their coordinate
 without these parts assemble as before. The names come from these packages:
 
 - ``parts``: friction, radial support, heat capacity and energy balance for your model. Importing it also defines
-  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
+  ``mbs.CreateRingFriction`` and similar methods.
 - ``solver``: ``solve_dynamic``, which is ``mbs.SolveDynamic`` with checks, and ``largest_stable_step`` for explicit
   solvers with a fixed step.
 - ``drivetrain``: engine, clutch and vehicle made of these parts, and an example, ``PASSENGER_CAR``.

@@ -135,6 +135,8 @@ def _freedom_of(mbs: Any, given: Any) -> Freedom | None:
         marker = mbs.GetMarker(given)
         node, coordinate = marker["nodeNumber"], marker["coordinate"]
     elif type(given).__name__ == "ObjectIndex":
+        if mbs.GetObject(given)["objectType"] == "Ground":
+            return None
         node = mbs.GetObjectParameter(given, "nodeNumber")
     kind, reference = mbs.GetNode(node)["nodeType"], mbs.GetNodeParameter(node, "referenceCoordinates")
     allowed = 1 if given is node else min(len(reference), 3)
