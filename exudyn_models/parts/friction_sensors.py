@@ -205,11 +205,16 @@ class RingFriction:
             spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
             return moment * (spin if spin > creep else spin * spin / creep)
 
-        stick = contact.stick if on_axis else None
+        stick, last = contact.stick, (second or first).stop - 1
+
+        def of_stick(t: float) -> float:
+            if stick is None or not stick.slides:
+                return 0.0
+            velocities = get_velocities(CURRENT, False)
+            spin: float = velocities.item(last) - (velocities.item(master) if pair else 0.0)
+            return -stick.moment(t, spin) * spin
 
         def of_any(t: float) -> float:
-            if stick is not None and not stick.slides:
-                return 0.0
             values = get_velocities(CURRENT, False)
             velocities = values[first].tolist()
             if second:
@@ -222,7 +227,8 @@ class RingFriction:
                     coordinates += values[second].tolist()
             return -float(sum(map(mul, force(mbs, t, 0, coordinates, velocities), velocities)))
 
-        contact.power = of_constant_moment if law and not second else of_any  # at half the cost
+        of_law = of_stick if stick is not None and on_axis else of_any
+        contact.power = of_constant_moment if law and not second else of_law  # at half the cost
         return contact.power
 
     def _add_heat(self, options: dict[str, Any]) -> Any:

@@ -82,13 +82,13 @@ class StickingContact:
 
     def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
         """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
-        self.stick.mode = mode
-        if self.stick.entered == (mode, *locks):
+        self.stick.mode, before = mode, self.stick.entered
+        if before == (mode, *locks):
             return
         self.stick.entered = mode, *locks
         for i, lock in enumerate(self.stick.locks):
             mbs.SetObjectParameter(lock, "activeConnector", i in locks)
-        if (forces := self.stick.constant_forces) is not None:
+        if before[:1] != (mode,) and (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def omit_user_functions(self, mbs: Any) -> None:
