@@ -5,7 +5,7 @@ by a method that lets the package's parts forget the numbers of their coordinate
 Models without these parts assemble as before. The names come from these packages:
 
 - ``parts``: friction, radial support, heat capacity and energy balance for your model. Importing it also defines
-  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
+  ``mbs.CreateRingFriction`` and similar methods.
 - ``solver``: ``solve_dynamic``, which is ``mbs.SolveDynamic`` with checks, and ``largest_stable_step`` for explicit
   solvers with a fixed step.
 - ``drivetrain``: engine, clutch and vehicle made of these parts, and an example, ``PASSENGER_CAR``.
@@ -28,6 +28,16 @@ from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.parts.rotational.couplings import RotorCoupling
 from exudyn_models.parts.rotational.gears import add_differential, add_gear, add_planetary
 from exudyn_models.parts.rotational.one_way_clutch import add_one_way_clutch
+from exudyn_models.parts.rotational.shifts import ShiftSequence, shift_sequence
+from exudyn_models.parts.rotational.sliders import add_slider_friction, add_tyre
+from exudyn_models.parts.rotational.torques import (
+    RoadLoad,
+    RotorTorques,
+    add_road_load,
+    add_torque,
+    add_torque_converter,
+    torque_table,
+)
 from exudyn_models.parts.rotational.torsional_spring import add_torsional_spring
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
 from exudyn_models.solver.linear.locked_state import ContactState, Linearisation, linearise
@@ -45,7 +55,10 @@ __all__ = [
     "ModeChange",
     "RadialSupport",
     "RingFriction",
+    "RoadLoad",
     "RotorCoupling",
+    "RotorTorques",
+    "ShiftSequence",
     "ThermalNode",
     "add_differential",
     "add_energy_balance",
@@ -55,17 +68,24 @@ __all__ = [
     "add_planetary",
     "add_radial_support",
     "add_ring_friction",
+    "add_road_load",
+    "add_slider_friction",
     "add_thermal_node",
+    "add_torque",
+    "add_torque_converter",
     "add_torsional_spring",
+    "add_tyre",
     "build_drivetrain",
     "build_model",
     "eigenvalues",
     "four_cylinder",
     "largest_stable_step",
     "linearise",
+    "shift_sequence",
     "simulate",
     "simulate_fixed_step",
     "simulate_with_native_contact",
     "solve_dynamic",
     "spring_energy",
+    "torque_table",
 ]

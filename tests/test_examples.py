@@ -324,3 +324,132 @@ def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tm
                 compared += 1
     assert compared >= 2
     assert set(tmp_path.iterdir()) == given, "a run has left files"
+
+
+def test_a_limited_slip_differential_on_ice_moves_exactly():
+    """The left tyre needs T·(1 − 2·ramp) − preload; all speeds are quadratic before and after it spins."""
+    example = run("15_limited_slip_differential.py")
+    car, wheel, case, radius, rise, until = (
+        example[name] for name in ("CAR", "WHEEL", "CASE", "RADIUS", "TORQUE", "UNTIL")
+    )
+    ice, whole = example["ICE"] * example["LOAD"] * radius, case + 2.0 * wheel + car * radius**2
+    for name, start in example["starts"].items():
+        preload, ramp = example["DIFFERENTIALS"][name]
+        needed = ((1.0 - case / whole) / 2.0 * (1.0 - 2.0 * ramp) - wheel / whole) * rise
+        spins = (ice + preload) / needed
+        system = np.array(
+            [
+                [case, 0.0, 0.0, 2.0],
+                [0.0, wheel, 0.0, 2.0 * ramp - 1.0],
+                [0.0, 0.0, wheel + car * radius**2, -1.0 - 2.0 * ramp],
+                [-2.0, 1.0, 1.0, 0.0],
+            ]
+        )
+        constant = np.linalg.solve(system, [0.0, -ice - preload, preload + ice, 0.0])[:3]
+        rising = np.linalg.solve(system, [rise, 0.0, 0.0, 0.0])[:3]
+        exact = rise / whole * spins**2 / 2.0 + constant * (until - spins)
+        exact += rising * (until**2 - spins**2) / 2.0
+        assert [change.time for change in start.changes] == pytest.approx(
+            [spins] * len(start.changes), abs=1e-9
+        )
+        assert [start.end(part) for part in ("case", "left", "right")] == pytest.approx(exact, abs=1e-7)
+        balance = start.read_balance()
+        assert np.max(np.abs(balance.residual)) < 1e-6 * balance.turnover
+
+
+def test_a_clutch_judders_as_its_eigenvalues_and_scipy_say():
+    example = run("16_clutch_judder.py")
+    inertias = np.array([example[name] for name in ("ENGINE", "DISC", "CAR")])
+    load, radius, stiffness, damping = (example[name] for name in ("LOAD", "RADIUS", "STIFFNESS", "DAMPING"))
+    shaft, clutch = np.outer([0.0, 1.0, -1.0], [0.0, 1.0, -1.0]), np.outer([1.0, -1.0, 0.0], [1.0, -1.0, 0.0])
+    governor = np.diag([example["GOVERNOR"], 0.0, 0.0])
+    for row, column in ((0, 0), (4, 10), (15, 39)):
+        slip, at = example["SLIPS"][column], example["DAMPINGS"][row]
+        slope = -load * radius**2 * 0.05 / 0.6 * np.exp(-radius * slip / 0.6)
+        lower = -np.hstack((stiffness * shaft, at * shaft + slope * clutch + governor)) / inertias[:, None]
+        values = np.linalg.eigvals(np.vstack((np.eye(3, 6, 3), lower)))
+        vibrations = values[np.abs(values.imag) > 1.0]
+        assert example["ratios"][row, column] == pytest.approx(
+            np.min(-vibrations.real / np.abs(vibrations)), rel=1e-5
+        )
+
+    def rates(t, state):
+        (twist, engine, disc, car) = state
+        moment = radius * load * example["coefficient"](radius * (engine - disc))
+        torque = example["TORQUE"] + example["GOVERNOR"] * (example["SPEED"] - engine)
+        held = stiffness * twist + damping * (disc - car)
+        return disc - car, *(np.array([torque - moment, moment - held, held]) / inertias)
+
+    def sticks(t, state):
+        return state[1] - state[2]
+
+    sticks.terminal = True
+    speed = example["SPEED"]
+    start = [radius * load * example["coefficient"](radius * speed) / stiffness, speed, 0.0, 0.0]
+    found = solve_ivp(rates, (0.0, example["UNTIL"]), start, events=sticks, rtol=1e-11, atol=1e-11)
+    assert example["changes"][0].time == pytest.approx(found.t[-1], abs=1e-3)
+    assert [int(change.after) for change in example["changes"]] == [0, -1, 0, -1, 0]
+
+
+def test_an_eight_speed_automatic_has_the_published_ratios_and_shifts_as_scipy_says():
+    """Ratios are those that ZF publishes for the 8HP70; events divide the run into smooth phases."""
+    example = run("17_eight_speed_automatic.py")
+    ratios = {gear: np.divide(*example["speeds_in"](gear, 1.0)[[0, -1]]) for gear in example["GEARS"]}
+    published = [4.696, 3.130, 2.104, 1.667, 1.285, 1.0, 0.839, 0.667, -3.297]
+    assert list(ratios.values()) == pytest.approx(published, abs=6e-4)
+    slips = example["SLIPS"] | {"lock-up": example["row"](("engine", -1.0), ("input", 1.0))}
+    inertias, resistance = np.array(list(example["INERTIAS"].values())), example["RESISTANCE"]
+    converter, engine = np.array(example["CONVERTER"]).T, np.array(example["ENGINE"]).T
+    loads = example["SHIFTS"].loads | {"lock-up": example["lock_up_load"]}
+
+    def solution(t, speeds, held, slides):
+        pump, turbine = speeds[:2]
+        fast = max(pump, turbine)
+        moment = np.interp(min(pump, turbine) / fast, converter[0], converter[1] ** -2.0) * fast**2
+        gain = np.interp(turbine / pump, converter[0], converter[2])
+        forces = np.zeros(len(speeds))
+        forces[0] = np.interp(pump, *engine) - (moment if pump >= turbine else -moment)
+        forces[1] = moment * gain if pump >= turbine else -moment
+        way = resistance["radius"] * speeds[-1]
+        drag = 0.6 * resistance["drag_area"] * way**2 + resistance["rolling"] * resistance["mass"] * 9.81
+        forces[-1] = -resistance["radius"] * drag
+        for name, direction in slides.items():
+            forces -= direction * 0.05 * loads[name](t) * slips[name]
+        rows = np.array([*example["GEAR_ROWS"], *(slips[name] for name in held)])
+        size = len(speeds)
+        system = np.zeros((size + len(rows),) * 2)
+        system[:size, :size], system[:size, size:], system[size:, :size] = np.diag(inertias), -rows.T, rows
+        found = np.linalg.solve(system, np.concatenate((forces, np.zeros(len(rows)))))
+        return found[:size], dict(zip(held, found[size + len(example["GEAR_ROWS"]) :], strict=True))
+
+    def phase(times, speeds, held, slides, event=None):
+        if event is not None:
+            event.terminal = True
+        found = solve_ivp(
+            lambda t, y: solution(t, y, held, slides)[0], times, speeds, events=event, rtol=1e-10, atol=1e-10
+        )
+        return found.t[-1], found.y[:, -1]
+
+    starts = example["speeds_in"]("3", example["START"])
+    _, y = phase((0.0, 0.5), np.array([1.1 * starts[0], *starts]), "BCE", {})
+    over = {"D": np.sign(slips["D"] @ y)}
+    release, y = phase(
+        (0.5, 0.9), y, "BCE", over,
+        lambda t, y: 0.05 * loads["C"](t) - abs(solution(t, y, "BCE", over)[1]["C"]),
+    )  # fmt: skip
+    over["C"] = -np.sign(solution(release, y, "BCE", over)[1]["C"])
+    lock, y = phase((release, 0.9), y, "BE", over, lambda t, y: slips["D"] @ y)
+    _, y = phase((lock, 0.9), y, "BDE", {"C": over["C"]})
+    _, y = phase((0.9, 2.0), y, "BDE", {})
+    closing = {"lock-up": np.sign(slips["lock-up"] @ y)}
+    closed, y = phase((2.0, 3.0), y, "BDE", closing, lambda t, y: slips["lock-up"] @ y)
+    _, y = phase((closed, 3.0), y, ["B", "D", "E", "lock-up"], {})
+    car = example["car"]
+    times, names, modes = zip(*car.events(), strict=True)
+    assert list(zip(names, modes, strict=True)) == [
+        ("D", over["D"]), ("C", over["C"]), ("D", 0), ("C", 2), ("lock-up", closing["lock-up"]), ("lock-up", 0),
+    ]  # fmt: skip
+    assert times == pytest.approx([0.5, release, lock, 0.9, 2.0, closed], abs=1e-5)
+    ends = [float(car.mbs.GetSensorValues(sensor)) for sensor in car.speeds.values()]
+    assert ends == pytest.approx(y, abs=1e-4)
+    assert np.max(np.abs(example["balance"].residual)) < 1e-6 * example["balance"].turnover

@@ -59,7 +59,10 @@ TASKS = {
         *("exudyn_models.add_thermal_node", "exudyn_models.ThermalNode"),
         *("exudyn_models.add_gear", "exudyn_models.add_planetary", "exudyn_models.add_differential"),
         *("exudyn_models.add_one_way_clutch", "exudyn_models.add_torsional_spring"),
-        "exudyn_models.RotorCoupling",
+        *("exudyn_models.add_slider_friction", "exudyn_models.add_tyre", "exudyn_models.RotorCoupling"),
+        *("exudyn_models.add_torque", "exudyn_models.torque_table", "exudyn_models.add_torque_converter"),
+        *("exudyn_models.RotorTorques", "exudyn_models.add_road_load", "exudyn_models.RoadLoad"),
+        *("exudyn_models.shift_sequence", "exudyn_models.ShiftSequence"),
     ),
     "Run an Exudyn model": (
         *("exudyn_models.solve_dynamic", "exudyn_models.ModeChange", "exudyn_models.largest_stable_step"),

@@ -5,19 +5,20 @@ and may be offset. A torsional spring and damper connect the disc to the gearbox
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.drivetrain.parameters import Drivetrain, Torque
+from exudyn_models.drivetrain.parameters import Drivetrain
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
 from exudyn_models.parts.energy_balance import EnergyBalance, Power, add_energy_balance, spring_energy
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.parts.rotational.torques import Torque, add_torque
 from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.solver_run import quiet
@@ -171,7 +172,9 @@ def build_drivetrain(
     )
     torques = {"engine": (engine, engine_torque), "vehicle": (vehicle, vehicle_torque)}
     gains = {
-        name: _add_torque(mbs, node, torque) for name, (node, torque) in torques.items() if torque is not None
+        name: add_torque(mbs, node, torque).power
+        for name, (node, torque) in torques.items()
+        if torque is not None
     }
     balance = _add_balance(mbs, gains, friction, support, torsion, drivetrain.torsional_damping)
     sensors = tuple(
@@ -228,7 +231,7 @@ def _add_torsional_spring(mbs: Any, drivetrain: Drivetrain, vehicle: Any, disc: 
 
 def _add_balance(
     mbs: Any,
-    gains: dict[str, Power],
+    gains: Mapping[str, Power],
     friction: RingFriction,
     support: RadialSupport,
     torsion: Any,
@@ -249,24 +252,3 @@ def _add_balance(
         stored=[support.stored_energy, spring_energy(torsion)],
         unit=ENERGY_UNIT,
     )
-
-
-def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
-    def now(mbs: Any, t: float) -> tuple[float, float]:
-        angle = float(mbs.GetNodeOutput(node, ANGLE))
-        speed = float(mbs.GetNodeOutput(node, SPEED))
-        return torque(t, angle, speed), speed
-
-    mbs.AddLoad(
-        items.LoadCoordinate(
-            markerNumber=coordinate_marker(mbs, node),
-            load=0.0,
-            loadUserFunction=lambda mbs, t, load: now(mbs, t)[0],
-        )
-    )
-
-    def power(mbs: Any, t: float) -> float:
-        moment, speed = now(mbs, t)
-        return moment * speed
-
-    return power

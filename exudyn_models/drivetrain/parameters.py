@@ -1,14 +1,11 @@
 """Parameters of a drivetrain: engine with flywheel, dry clutch and vehicle, and the torques on them."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from typing import Any
 
+from exudyn_models.parts.rotational.torques import Torque
 from reference_model.systems import finite_number
-
-Torque: TypeAlias = Callable[[float, float, float], float]
-"""Function of time (s), angle (rad) and speed (rad/s) of a shaft; returns a torque in N m."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -136,7 +136,8 @@ class RowLaw:
     against the slip. The limits may be equal (a clutch), zero and infinite (a one-way clutch), or grow with the force
     of a constraint (a gear with losses).
 
-    ``reference``, shape (n,), contains the reference coordinates of the nodes, ``static_ratio`` is static divided by
+    ``weights``, shape (n,), are the derivatives of s by the nodes' velocities if they are constant. ``reference``,
+    shape (n,), contains the reference coordinates of the nodes, ``static_ratio`` is static divided by
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``point`` is the number of
     a point, from 1, of a contact at several points. ``on_axis`` is False if the bodies can slide sideways.
@@ -144,6 +145,7 @@ class RowLaw:
     held directions that Exudyn knows. ``holds`` returns the forces of a contact at rest along its locks.
     """
 
+    weights: FloatArray = field(default_factory=lambda: np.empty(0))
     reference: FloatArray = field(default_factory=lambda: np.empty(0))
     static_ratio: float = 1.0
     locks: tuple[int, ...] = ()
@@ -181,7 +183,8 @@ class RowLaw:
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
         """Return the derivatives of s with respect to the nodes' velocities; ``q`` excludes reference values."""
-        raise NotImplementedError
+        weights: Floats = self.weights.tolist()
+        return weights
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest moments in N m of a locked contact against sliding forward and backward."""
@@ -202,6 +205,27 @@ class RowLaw:
     def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
         """Return s in rad/s."""
         return float(np.dot(self.gradient(q), q_t))
+
+    def twist(self, q: Floats | FloatArray) -> float:
+        """Return the angle of the slip in rad; ``q`` excludes reference values."""
+        return float(self.weights @ q)
+
+    def mode_at(self, twist: float, rate: float) -> Mode:
+        """Return the mode that a sensor shows."""
+        return self.visible_mode
+
+    def moment_and_friction(self, t: float, twist: float, rate: float) -> tuple[float, float]:
+        """Return the moment along the slip and the friction in N m that sensors show."""
+        moment = float(self.held_forces()[0]) if self.mode == Mode.LOCKED else self.moment(t, rate)
+        return moment, moment
+
+    def lost_power(self, t: float, twist: float, rate: float) -> float:
+        """Return the lost power in W."""
+        return -self.moment_and_friction(t, twist, rate)[1] * rate
+
+    def energy(self, twist: float) -> float:
+        """Return the stored energy in J."""
+        return 0.0
 
     def without_rounding(self, friction: float) -> float:
         """Return ``friction``, or zero if it is a rounding error of the largest friction so far."""
@@ -275,10 +299,6 @@ class AxialStick(RowLaw):
     def renew(self) -> None:
         """Use the present load and coefficient; nothing to do here, because every call reads them."""
 
-    def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return the derivatives of S with respect to the nodes' velocities; ``q`` excludes reference values."""
-        return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
-
     @cached_property
     def mean_radius(self) -> float:
         """P/|S| of a disc that turns in place, in m."""
@@ -287,6 +307,16 @@ class AxialStick(RowLaw):
     def sliding_moment(self, t: float, spin: float) -> float:
         """Return the magnitude of the moment in N m."""
         return self.mean_radius * self.factors.friction_force(t, 0.0, self.mean_radius * abs(spin), spin)
+
+    def sliding_slope(self, t: float, spin: float) -> float:
+        """Return the derivative of the magnitude of the moment by the relative spin, in N m s."""
+        return self.slope_of(self.factors, t, spin)
+
+    def slope_of(self, factors: LoadAndCoefficient, t: float, spin: float) -> float:
+        """Return ``sliding_slope`` under these ``factors``."""
+        radius = self.mean_radius
+        _, by_speed, by_spin = factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
+        return radius * float(by_speed * math.copysign(radius, spin) + by_spin)
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest moments in N m of a locked contact against sliding forward and backward.
@@ -331,9 +361,7 @@ class AxialStick(RowLaw):
         if self.factors.depends_on_motion and self.slides:
             spin, direction = float(gradient @ q_t), int(self.mode or 0)
             if direction * spin > 0.0:  # ``moment`` is constant beyond zero slip
-                radius = self.mean_radius
-                _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
-                slope = direction * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
+                slope = direction * self.sliding_slope(t, spin)
         return velocity_factor * slope * np.outer(gradient, gradient)
 
 

@@ -79,6 +79,10 @@ class LoadAndCoefficient:
             self.geometry, self.friction_coefficient, self.normal_load, plates=int(self._plates)
         )
 
+    def per_newton(self) -> LoadAndCoefficient:
+        """Return the sliding friction under 1 N."""
+        return LoadAndCoefficient(self.geometry, self.friction_coefficient, 1.0, plates=int(self._plates))
+
     def at_pins(self, shares: FloatArray) -> list[LoadAndCoefficient]:
         """Return the sliding friction of pins that carry these ``shares`` of the load, shape (n,)."""
         pin = 0.0, 1, 1.0, self.geometry[3], NONE_HELD, table_of(ring_places(0.0, 1))

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from exudyn_models.forces.jit import KeptOnDisk, compiled, inlined
 from exudyn_models.forces.laws.tables import number_at
 
-ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
+ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS, POINT_2D, POINT = range(8)
 
 KINDS = {
     "1D": ROTOR,
@@ -30,15 +30,20 @@ KINDS = {
     "RigidBodyRotVecLG": ROTATION_VECTOR,
     "RigidBodyRxyz": TAIT_BRYAN,
     "RigidBodyEP": EULER_PARAMETERS,
+    "Point2D": POINT_2D,
+    "Point": POINT,
 }
 """Kinds of nodes, by Exudyn's names."""
 
 SPATIAL = (ROTATION_VECTOR, TAIT_BRYAN, EULER_PARAMETERS)
 
-TRANSLATIONS = (0, 2, 3, 3, 0, 3)
+POINTS = (POINT_2D, POINT)
+"""Kinds without rotation."""
+
+TRANSLATIONS = (0, 2, 3, 3, 0, 3, 2, 3)
 """Number of position coordinates of each kind, which precede the rotation."""
 
-SIZES = (1, 3, 6, 6, 0, 7)
+SIZES = (1, 3, 6, 6, 0, 7, 2, 3)
 """Number of coordinates of each kind; the ground has none."""
 
 IMAGINARY_STEP = 1e-30
@@ -187,7 +192,7 @@ def frame(kind: int, q: Array, at: int) -> tuple[Vector, Axes, tuple[Vector, Vec
     if kind == EULER_PARAMETERS:
         return place, *_rotated_by_euler_parameters(q[angle], q[angle + 1], q[angle + 2], q[angle + 3])
     c, s, turning = one, zero, none
-    if kind != GROUND:
+    if SIZES[kind] > TRANSLATIONS[kind]:
         (c, s), turning = _cosine_and_sine(q[angle]), (zero, zero, one)
     return place, ((c, s, zero), (-s, c, zero), (zero, zero, one)), (turning, none, none, none)
 

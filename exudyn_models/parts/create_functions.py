@@ -1,99 +1,69 @@
-"""``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts as functions in Exudyn's style."""
+"""``mbs.CreateRingFriction``, ``mbs.CreateGear`` and so on: the parts as functions in Exudyn's style."""
 
-from collections.abc import Sequence
+import inspect
+import re
+from collections.abc import Callable
 from typing import Any
 
 import exudyn as exu
-from exudyn.misc.extensionRegistry import extends, install
 
-from exudyn_models.forces.laws.pressures import Pressure
-from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
-from exudyn_models.parts.friction_sensors import RingFriction
-from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
-from exudyn_models.parts.ring_friction import ContactPoints, add_ring_friction
-from exudyn_models.parts.thermal_node import ThermalNode
+from exudyn_models.parts.radial_support import add_radial_support
+from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.parts.rotational.gears import add_differential, add_gear, add_planetary
+from exudyn_models.parts.rotational.one_way_clutch import add_one_way_clutch
+from exudyn_models.parts.rotational.sliders import add_slider_friction, add_tyre
+from exudyn_models.parts.rotational.torques import add_road_load, add_torque_converter
+from exudyn_models.parts.rotational.torsional_spring import add_torsional_spring
+
+PARTS: tuple[Callable[..., Any], ...] = (
+    add_ring_friction,
+    add_radial_support,
+    add_gear,
+    add_planetary,
+    add_differential,
+    add_one_way_clutch,
+    add_torsional_spring,
+    add_slider_friction,
+    add_tyre,
+    add_road_load,
+    add_torque_converter,
+)
+"""Functions whose positional arguments are ``mbs`` and bodies."""
 
 
-@extends(exu.MainSystem)
-def MainSystemCreateRingFriction(
-    mbs: Any,
-    bodyNumbers: Sequence[Any],
-    *,
-    frictionCoefficient: Coefficient,
-    normalLoad: NumberOrFunction,
-    regularisation: float | None = None,
-    contactRadius: float | None = None,
-    innerRadius: float | None = None,
-    outerRadius: float | None = None,
-    contactPoints: ContactPoints | None = None,
-    staticRatio: float = 1.0,
-    plates: int = 1,
-    pressure: Pressure = "uniform",
-    thermalNode: ThermalNode | None = None,
-    masterRotation: Any = None,
-    discRotation: Any = None,
-) -> RingFriction:
-    """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
+def _camel(name: str) -> str:
+    return re.sub("_(.)", lambda match: match[1].upper(), name)
 
-    Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. An Exudyn ground, or None, is a master at
-    rest. All other arguments and errors are the same as in ``add_ring_friction``.
-    """
-    master, disc = _two_bodies(bodyNumbers)
-    return add_ring_friction(
-        mbs,
-        master,
-        disc,
-        contact_radius=contactRadius,
-        inner_radius=innerRadius,
-        outer_radius=outerRadius,
-        friction_coefficient=frictionCoefficient,
-        normal_load=normalLoad,
-        regularisation=regularisation,
-        contact_points=contactPoints,
-        static_ratio=staticRatio,
-        plates=plates,
-        pressure=pressure,
-        thermal_node=thermalNode,
-        master_rotation=masterRotation,
-        disc_rotation=discRotation,
+
+def _created(add: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a part as a method with ``bodyNumbers`` and the arguments of ``add`` in Exudyn's spelling."""
+    mbs, *others = inspect.signature(add).parameters.values()
+    bodies = [one.name for one in others if one.kind is one.POSITIONAL_OR_KEYWORD]
+    options = {_camel(one.name): one for one in others if one.kind is one.KEYWORD_ONLY}
+
+    def create(mbs: Any, bodyNumbers: Any, **given: Any) -> Any:
+        if not isinstance(bodyNumbers, (list, tuple)) or len(bodyNumbers) != len(bodies):
+            count = {1: "one body", 2: "two bodies", 3: "three bodies"}[len(bodies)]
+            raise ValueError(
+                f"bodyNumbers = {bodyNumbers!r}: it must be a list of {count}, {', '.join(bodies)}"
+            )
+        if unknown := [name for name in given if name not in options]:
+            raise TypeError(f"{unknown[0]} is not an argument; these are {', '.join(options)}")
+        return add(mbs, *bodyNumbers, **{options[name].name: value for name, value in given.items()})
+
+    both = [mbs, mbs.replace(name="bodyNumbers")]
+    both += [one.replace(name=name) for name, one in options.items()]
+    create.__name__ = create.__qualname__ = _camel(f"create_{add.__name__.removeprefix('add_')}").replace(
+        "c", "C", 1
     )
-
-
-@extends(exu.MainSystem)
-def MainSystemCreateRadialSupport(
-    mbs: Any,
-    bodyNumbers: Sequence[Any],
-    *,
-    stiffness: float,
-    damping: float = 0.0,
-    hardening: float = 0.0,
-    stopGap: float = 0.0,
-    stopStiffness: float = 0.0,
-    offset: Sequence[float] = (0.0, 0.0),
-) -> RadialSupport:
-    """Add springs, a stop and a damper from a base to a disc; return the handle with the connector's ``item``.
-
-    Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. The base may be an Exudyn ground, or
-    None. All other arguments and errors are the same as in ``add_radial_support``.
-    """
-    base, disc = _two_bodies(bodyNumbers)
-    return add_radial_support(
-        mbs,
-        base,
-        disc,
-        stiffness=stiffness,
-        damping=damping,
-        hardening=hardening,
-        stop_gap=stopGap,
-        stop_stiffness=stopStiffness,
-        offset=offset,
+    create.__doc__ = (
+        f"Add a part as ``{add.__name__}`` does, between the bodies {', '.join(bodies)}; return its handle.\n\n"
+        "An Exudyn ground, or None, is at rest. Other arguments and errors are those of that function."
     )
+    vars(create)["__signature__"] = inspect.Signature(both)
+    return create
 
 
-def _two_bodies(numbers: Sequence[Any]) -> tuple[Any, Any]:
-    if not isinstance(numbers, (list, tuple)) or len(numbers) != 2:
-        raise ValueError(f"bodyNumbers = {numbers!r}: it must be a list of two bodies")
-    return numbers[0], numbers[1]
-
-
-install()  # type: ignore[no-untyped-call]
+for _add in PARTS:
+    _method = _created(_add)
+    setattr(exu.MainSystem, _method.__name__, _method)

@@ -7,6 +7,7 @@ along with all coordinates, so works are as accurate as the motion.
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeAlias
 
 import exudyn as exu
@@ -15,6 +16,7 @@ import numpy as np
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, at_assembly, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.solver_run import quiet
+from exudyn_models.solver.starting_rates import Works
 from reference_model.systems import FloatArray, positive_number, require_callable, require_kind
 
 Power: TypeAlias = Callable[[Any, float], float]
@@ -143,17 +145,11 @@ def _check_powers(gains: Mapping[str, Power], losses: Mapping[str, Power]) -> No
 
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
     powers = list(named.values())
-
-    def of_all(mbs: Any, t: float, item: int, works: Any) -> list[float]:
-        return [power(mbs, t) / unit for power in powers]
-
-    def of_one(mbs: Any, t: float, item: int, works: Any) -> list[float]:
-        return [powers[0](mbs, t) / unit]
-
-    rates = of_one if len(powers) == 1 else of_all
+    works = Works(mbs, lambda mbs, t: [power(mbs, t) / unit for power in powers])
+    rates = partial(works.rates)  # takes attributes, unlike a method
     watch_powers(rates, list(named), unit)
-    node = add_integrals(mbs, rates, [0.0] * len(powers))
-    return node_sensor(mbs, node, exu.OutputVariableType.Coordinates)
+    works.node = add_integrals(mbs, rates, [0.0] * len(powers))
+    return node_sensor(mbs, works.node, exu.OutputVariableType.Coordinates)
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:

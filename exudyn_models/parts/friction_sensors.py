@@ -9,7 +9,7 @@ from typing import Any, Literal, cast, get_args
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import constant_law, on_one_axis
+from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, RowLaw, constant_law, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
@@ -59,6 +59,22 @@ class RingFriction:
     def effective_radius(self) -> float:
         """Ratio of moment to friction force in m of a disc that only turns: M = μN·r, of all plates."""
         return mean_radius(self._contact.factors.geometry)
+
+    @property
+    def source(self) -> tuple[RowLaw | None, Callable[[], float]] | None:
+        """Law and present moment in N m for a contact that this one loads; None unless both turn on one axis."""
+        contact, stick, data = self._contact, self._contact.stick, self.mbs.systemData
+        if contact.kinds not in ON_ONE_AXIS:
+            return None
+
+        def present() -> float:
+            t = data.GetTime(CURRENT)
+            q, q_t = (values.tolist() for values in motion_of(self.mbs, contact, self.item, CURRENT))
+            if stick is not None:
+                return stick.moment(t, stick.slip(q, q_t))
+            return float(contact.functions["force"](self.mbs, t, 0, q, q_t)[-1])
+
+        return stick, present
 
     def change(
         self,
@@ -180,6 +196,15 @@ class RingFriction:
             spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
             return moment * (spin if spin > creep else spin * spin / creep)
 
+        stick, last = contact.stick, (second or first).stop - 1
+
+        def of_stick(t: float) -> float:
+            if stick is None or not stick.slides:
+                return 0.0
+            velocities = get_velocities(CURRENT, False)
+            spin: float = velocities.item(last) - (velocities.item(master) if pair else 0.0)
+            return -stick.moment(t, spin) * spin
+
         def of_any(t: float) -> float:
             values = get_velocities(CURRENT, False)
             velocities = values[first].tolist()
@@ -193,7 +218,8 @@ class RingFriction:
                     coordinates += values[second].tolist()
             return -float(sum(map(mul, force(mbs, t, 0, coordinates, velocities), velocities)))
 
-        contact.power = of_constant_moment if law and not second else of_any  # at half the cost
+        of_law = of_stick if stick is not None and on_axis else of_any
+        contact.power = of_constant_moment if law and not second else of_law  # at half the cost
         return contact.power
 
     def _add_heat(self, options: dict[str, Any]) -> Any:

@@ -17,6 +17,7 @@ from exudyn_models.forces.slip_kinematics import (
     KINDS,
     NO_MOUNTS,
     PLANAR,
+    POINTS,
     ROTOR,
     SPATIAL,
     TRANSLATIONS,
@@ -29,7 +30,7 @@ indices: Any = exu  # the index types are missing from its type hints
 
 ALL = tuple(KINDS.values())
 
-BODIES = ("RotationalMass1D", "RigidBody2D", "RigidBody")
+BODIES = ("RotationalMass1D", "RigidBody2D", "RigidBody", "MassPoint2D", "MassPoint")
 """Objects, by Exudyn's names, whose nodes may have one of the ``KINDS``."""
 
 FLAT = (GROUND, ROTOR, PLANAR)
@@ -143,6 +144,8 @@ def check_axes(mbs: Any, master: Side, disc: Side) -> None:
     fixed = master.kind in FLAT and disc.kind in FLAT
     axis = _axes_and_spin(mbs, master)[0] @ master.rotation[:, 2]
     for side, other in ((master, disc), (disc, master)):
+        if side.kind in POINTS:
+            raise ValueError(f"{side.name} {int(side.node)} is a point: contact_radius must be 0 on a point")
         if side.kind == GROUND:
             continue
         own = spin = _axes_and_spin(mbs, side)[1]

@@ -43,14 +43,16 @@ from exudyn_models.forces.friction_laws import Contact as Geometry
 from exudyn_models.forces.laws.places import places_in, ring_places, table_of
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import Kinds
+from exudyn_models.forces.slip_kinematics import GROUND, Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_friction_connector, rotor_markers
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.mounts import Side, check_axes, checked_sides, kinds_at, nodes_and_kinds
+from exudyn_models.parts.rotational.couplings import RotorCoupling
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.contacts import Contact
 from exudyn_models.solver.items import items
+from exudyn_models.solver.rows.moment_loads import MomentLoadedStick, SelfEnergisingStick
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import (
@@ -58,6 +60,7 @@ from reference_model.systems import (
     Place,
     checked_places,
     finite_number,
+    finite_numbers,
     positive_number,
     require_whole,
     shown,
@@ -109,6 +112,8 @@ def add_ring_friction(
     held: int | None = None,
     master_rotation: Any = None,
     disc_rotation: Any = None,
+    load_gain: float | Sequence[float] = 0.0,
+    load_part: Any = None,
 ) -> RingFriction:
     """Add friction between a master disc and a disc to a model; return a handle with the connector and its sensors.
 
@@ -139,6 +144,10 @@ def add_ring_friction(
         Number i + 1 of a point, about which the disc pivots, whose friction is viscous at any slip.
     master_rotation, disc_rotation : array of shape (3, 3), optional
         Axes of the contact as columns in the axes of each body. Default: the axes of the bodies.
+    load_gain : float or (float, float)
+        g in 1/m of a load N + g·|T|, for rotors that stick exactly; or two, for T > 0 and for T < 0.
+    load_part : RingFriction or RotorCoupling, optional
+        Part that transmits the moment T. Default: this contact itself, where T is the moment on the disc.
 
     """
     radii = contact_radius, inner_radius, outer_radius
@@ -146,7 +155,8 @@ def add_ring_friction(
     coefficient = _with_temperature(friction_coefficient, thermal_node)
     factors = LoadAndCoefficient(geometry, coefficient, normal_load, static_ratio, plates)
     sides = checked_sides(mbs, master_node, disc_node, rotations=(master_rotation, disc_rotation))
-    return _add_friction(mbs, sides, factors, regularisation is None, thermal_node)
+    growth = checked_growth(mbs, load_gain, load_part)
+    return _add_friction(mbs, sides, factors, regularisation is None, thermal_node, growth)
 
 
 def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None) -> Coefficient:
@@ -157,16 +167,49 @@ def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None
     return thermal_node.with_temperature(coefficient)
 
 
+def checked_growth(mbs: Any, gain: float | Sequence[float], part: Any) -> dict[str, Any]:
+    """Return the arguments of a law whose load grows with a moment, or none."""
+    gains = finite_numbers("load_gain", gain)
+    if gains.shape not in ((), (2,)) or (part is not None and gains.min() < 0.0):
+        raise ValueError(f"load_gain = {shown(gain)}: it must be one or two numbers, >= 0 with a load_part")
+    growth = dict[str, Any](gains=tuple(np.broadcast_to(gains, 2).tolist()))
+    if part is None:
+        return growth if gains.any() else {}
+    if not isinstance(part, (RingFriction, RotorCoupling)) or part.mbs is not mbs or part.source is None:
+        raise ValueError(
+            f"load_part = {shown(part)}: it must be a handle of add_ring_friction between rotors on one axis, or of "
+            "a coupling, in this model"
+        )
+    law, present = part.source
+    return growth | {"part": law, "present": present}
+
+
+def law_on_axis(growth: dict[str, Any]) -> type[AxialStick]:
+    """Return the law of friction on one axis, whose load may grow with a moment."""
+    if "part" in growth:
+        return MomentLoadedStick
+    return SelfEnergisingStick if growth else AxialStick
+
+
 def _add_friction(
-    mbs: Any, sides: tuple[Side, Side], factors: LoadAndCoefficient, sticks: bool, thermal: ThermalNode | None
+    mbs: Any,
+    sides: tuple[Side, Side],
+    factors: LoadAndCoefficient,
+    sticks: bool,
+    thermal: ThermalNode | None,
+    growth: dict[str, Any],
 ) -> RingFriction:
     if factors.contact_radius > 0.0:  # a pin exerts no moment
         check_axes(mbs, *sides)
     nodes, kinds = nodes_and_kinds(*sides)
+    if growth and not (sticks and kinds in ON_ONE_AXIS):
+        raise ValueError("load_gain: it needs rotors on one axis, or the ground, and no regularisation")
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
     pins = _pins(mbs, sides, kinds, factors) if sticks else []
     contact = (
-        _sticking(kinds, reference, factors, pins) if sticks else _regularised(kinds, reference, factors)
+        _sticking(kinds, reference, factors, pins, growth)
+        if sticks
+        else _regularised(kinds, reference, factors)
     )
     item = add_friction_connector(mbs, nodes, contact)
     if contact.stick is not None:
@@ -197,15 +240,22 @@ def _pins(mbs: Any, sides: tuple[Side, Side], kinds: Kinds, factors: LoadAndCoef
 
 
 def _sticking(
-    kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient, pins: Sequence[Kinds]
+    kinds: Kinds,
+    reference: FloatArray,
+    factors: LoadAndCoefficient,
+    pins: Sequence[Kinds],
+    growth: dict[str, Any],
 ) -> Contact:
     ratio, factors = factors.static_ratio, factors.without_peak()
+    options: dict[str, Any] = {"reference": reference, "static_ratio": ratio}
     stick: AxialStick
     if pins and kinds not in ON_ONE_AXIS:
         stick = PointSticks.at(pins, kinds, reference, factors, ratio)
+    elif kinds in ON_ONE_AXIS:
+        weights = np.array([1.0] if kinds[0] == GROUND else [-1.0, 1.0])
+        stick = law_on_axis(growth)(kinds, factors, weights=weights, **options, **growth)
     else:
-        law = AxialStick if kinds in ON_ONE_AXIS else PlanarStick
-        stick = law(kinds, factors, reference=reference, static_ratio=ratio)
+        stick = PlanarStick(kinds, factors, **options)
     return Contact(
         kinds, reference, factors, {"force": stick.force, "jacobian": stick.jacobian}, stick, False
     )

@@ -36,7 +36,7 @@ from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
-from exudyn_models.solver.starting_rates import starting_rates
+from exudyn_models.solver.starting_rates import starting_rates, works_at_step_ends
 from exudyn_models.solver.steep_laws import peaks_resolved
 from exudyn_models.solver.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.stick.sticking_contacts import (
@@ -190,6 +190,7 @@ def _solve(
 
 
 def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) -> None:
+    repairs.enter_context(works_at_step_ends(mbs))
     repairs.enter_context(starting_rates(mbs, options.startTime))
     repairs.enter_context(newton_without_restart(mbs, options.newton))
     repairs.enter_context(peaks_resolved(mbs, options))

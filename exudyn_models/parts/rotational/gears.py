@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, rotors_of, weights_of
+from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, freedoms_of, weights_of
 from exudyn_models.solver.rows.laws import MeshLaw, Share
 from reference_model.systems import FloatArray, finite_number, finite_numbers, shown
 
@@ -49,19 +49,19 @@ def add_gear(
         If a number is out of range, or a rotor is invalid.
 
     """
-    nodes = list(rotors_of(mbs, first=first, second=second, carrier=carrier).values())
+    freedoms = freedoms_of(mbs, first=first, second=second, carrier=carrier)
     if (ratio := finite_number("ratio", ratio)) == 0.0:
         raise ValueError("ratio = 0: it must not be zero")
     table = _efficiencies(efficiency)
     law = MeshLaw(
-        weights_of(nodes, (1.0, 0.0, -1.0)),
-        mbs.systemData,
-        constraint=weights_of(nodes, (1.0, -ratio, ratio - 1.0)),
+        weights=weights_of(freedoms, (1.0, 0.0, -1.0)),
+        data=mbs.systemData,
+        constraint=weights_of(freedoms, (1.0, -ratio, ratio - 1.0)),
         lossless=bool((table[:, 1:] == 1.0).all()),
         preload=0.0,
         share=_share_of(table),
     )
-    return add_coupling(mbs, nodes, law)
+    return add_coupling(mbs, freedoms, law)
 
 
 def add_planetary(
@@ -87,19 +87,19 @@ def add_differential(
     >= 0; by default there is no friction. The sensor ``"moment"`` is half of the moment on the sides from the case.
     The sensor ``"friction"`` acts forward on the left and backward on the right.
     """
-    nodes = list(rotors_of(mbs, case=case, left=left, right=right).values())
+    freedoms = freedoms_of(mbs, case=case, left=left, right=right)
     for name, value in (("preload", preload), ("ramp", ramp)):
         if finite_number(name, value) < 0.0:
             raise ValueError(f"{name} = {value:g}: it must be >= 0")
     law = MeshLaw(
-        weights_of(nodes, (0.0, 1.0, -1.0)),
-        mbs.systemData,
-        constraint=weights_of(nodes, (-2.0, 1.0, 1.0)),
+        weights=weights_of(freedoms, (0.0, 1.0, -1.0)),
+        data=mbs.systemData,
+        constraint=weights_of(freedoms, (-2.0, 1.0, 1.0)),
         lossless=preload == ramp == 0.0,
         preload=preload,
         share=lambda load, drives: 2.0 * ramp,
     )
-    return add_coupling(mbs, nodes, law)
+    return add_coupling(mbs, freedoms, law)
 
 
 def _efficiencies(efficiency: Efficiency) -> FloatArray:

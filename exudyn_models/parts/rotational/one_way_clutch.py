@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, rotors_of, weights_of
+from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, freedoms_of, weights_of
 from exudyn_models.solver.rows.laws import OneWayLaw
 
 
@@ -13,5 +13,7 @@ def add_one_way_clutch(mbs: Any, driver: Any, driven: Any) -> RotorCoupling:
     moment on the driven rotor. If the driven rotor is slower at the start, an impact equalises both speeds. Rotors as
     in ``add_gear``; None is the ground.
     """
-    nodes = list(rotors_of(mbs, driver=driver, driven=driven).values())
-    return add_coupling(mbs, nodes, OneWayLaw(weights_of(nodes, (-1.0, 1.0)), mbs.systemData))
+    freedoms = freedoms_of(mbs, driver=driver, driven=driven)
+    return add_coupling(
+        mbs, freedoms, OneWayLaw(weights=weights_of(freedoms, (-1.0, 1.0)), data=mbs.systemData)
+    )

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, rotors_of, weights_of
+from exudyn_models.parts.rotational.couplings import RotorCoupling, add_coupling, freedoms_of, weights_of
 from exudyn_models.solver.rows.backlash import Backlash
 from reference_model.systems import finite_number, positive_number
 
@@ -18,18 +18,16 @@ def add_torsional_spring(
 
     Several springs between the same rotors make a clutch damper with stages. ``add_ring_friction`` adds hysteresis.
     """
-    nodes = list(rotors_of(mbs, first=first, second=second).values())
+    freedoms = freedoms_of(mbs, first=first, second=second)
     if (damping := finite_number("damping", damping)) < 0.0:
         raise ValueError(f"damping = {damping:g} N m s/rad: it must be >= 0")
-    references = [
-        0.0 if node is None else mbs.GetNodeParameter(node, "referenceCoordinates")[0] for node in nodes
-    ]
+    references = [0.0 if freedom is None else freedom.reference for freedom in freedoms]
     law = Backlash(
-        weights_of(nodes, (-1.0, 1.0)),
-        mbs.systemData,
+        weights=weights_of(freedoms, (-1.0, 1.0)),
+        data=mbs.systemData,
         stiffness=positive_number("stiffness", stiffness, "N m/rad"),
         damping=damping,
         clearance=positive_number("backlash", backlash, "rad"),
         middle=references[1] - references[0],
     )
-    return add_coupling(mbs, nodes, law)
+    return add_coupling(mbs, freedoms, law)

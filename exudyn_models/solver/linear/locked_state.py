@@ -14,7 +14,8 @@ from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.linear.matrices import matrices_of_model
-from exudyn_models.solver.rows.laws import MeshLaw
+from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw
+from exudyn_models.solver.rows.moment_loads import MomentLoadedStick
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.mode_choice import ModeChoice
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
@@ -220,12 +221,18 @@ def _coordinates(data: Any, contact: StickingContact) -> tuple[FloatArray, Float
 
 
 def _turns_of(contacts: Sequence[StickingContact]) -> list[tuple[int, NDArray[Any], FloatArray]]:
-    """Return constraints of sliding meshes, their coordinates, and the part of friction in their directions."""
-    return [
-        (law.item, contact.places, -law.slope * law.weights)
-        for contact in contacts
-        if isinstance(law := contact.stick, MeshLaw) and law.slides
-    ]
+    """Return constraints, and coordinates and directions of sliding friction that grows with their forces."""
+    found = []
+    for contact in contacts:
+        law = contact.stick
+        if not isinstance(law, GrowingLimit) or not law.slides:
+            continue
+        part = law.part if isinstance(law, MomentLoadedStick) else law
+        if part is not None and (isinstance(part, MeshLaw) or part.mode == Mode.LOCKED):
+            item = part.item if isinstance(part, MeshLaw) else part.locks[0]
+            slope = law.slope_at(law.load, int(law.mode or 0))
+            found.append((item, contact.places, -slope * np.array(law.gradient([]))))
+    return found
 
 
 def _about_initial_values(

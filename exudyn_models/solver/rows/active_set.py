@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.solver.rows.laws import MeshLaw
+from exudyn_models.solver.rows.laws import GrowingLimit
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -28,25 +28,25 @@ CLOSE = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class LoadedRows:
-    """Rows with infinite limits or meshes.
+    """Rows with infinite limits, or limits that grow with moments.
 
-    ``loads``, shape (m,), is T₀ and ``by_force``, shape (m, k), W. ``laws`` contains the mesh of each row, or None,
-    and ``pinned``, shape (k,), the direction of rows that slide already, or 0. The limits of meshes are multiplied
-    by ``reduction``, shape (k,).
+    ``loads``, shape (m,), is T₀ and ``by_force``, shape (m, k), W. ``laws`` contains growing limits, and None for
+    other rows, and ``pinned``, shape (k,), the direction of rows that slide already, or 0. Growing limits are scaled
+    like the present ones, ``sliding``, shape (k, 2), in slip.
     """
 
     loads: FloatArray
     by_force: FloatArray
-    laws: Sequence[MeshLaw | None]
+    laws: Sequence[GrowingLimit | None]
     pinned: NDArray[np.int_]
-    reduction: FloatArray
+    sliding: FloatArray
 
     def forces(
         self, to_rates: FloatArray, rates: FloatArray, limits: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return the forces, shape (k,), and the slip accelerations that they leave.
 
-        ``limits``, shape (k, 2), limit the forces of rows without a mesh against slip forward and backward.
+        ``limits``, shape (k, 2), are the present limits of the forces against slip forward and backward.
         """
         states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
         meshes = any(law is not None for law in self.laws)
@@ -77,7 +77,7 @@ class LoadedRows:
         found = limits.copy()
         for i, law in enumerate(self.laws):
             if law is not None:
-                found[i] = [self.reduction[i] * law.limit(loads[law.place], way) for way in (1, -1)]
+                found[i] *= [law.limit(loads[law.place], way) for way in (1, -1)] / self.sliding[i]
         return found
 
     def _at(
@@ -99,9 +99,11 @@ class LoadedRows:
                 if law is None or not slides[i]:
                     continue
                 load, way = loads[law.place], int(states[i])
-                slope = self.reduction[i] * law.slope_at(load, way)
+                at = (1, -1).index(way)
+                scale = limits[i, at] / self.sliding[i, at]
+                slope = scale * law.slope_at(load, way)
                 system[i] += slope * self.by_force[law.place]
-                right[i] = -self.reduction[i] * way * law.preload - slope * self.loads[law.place]
+                right[i] = -scale * way * law.limit(0.0, way) - slope * self.loads[law.place]
             forces = np.linalg.solve(system, right)
             found = self.loads + self.by_force @ forces
             same = np.abs(found - loads).max(initial=0.0) <= CLOSE * np.abs(found).max(initial=0.0)
@@ -114,4 +116,4 @@ class LoadedRows:
 def unloaded(count: int) -> LoadedRows:
     """Return ``count`` rows without meshes that may all rest."""
     none = np.zeros((0, count))
-    return LoadedRows(np.empty(0), none, [None] * count, np.zeros(count, int), np.ones(count))
+    return LoadedRows(np.empty(0), none, [None] * count, np.zeros(count, int), np.ones((count, 2)))

@@ -53,7 +53,7 @@ class Backlash(RotaryLaw):
         """Return the pressed flank, which is constant within a step of ``solve_dynamic``."""
         return self.visible_mode if self.running else self.pressed(twist, rate)
 
-    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
+    def moment_and_friction(self, t: float, twist: float, rate: float) -> tuple[float, float]:
         """Return the moment on the second rotor in N m, and no friction."""
         mode = self.mode_at(twist, rate)
         return -int(mode) * self._flank(int(mode), twist, rate)[1] if mode in SLIDING else 0.0, 0.0
@@ -62,14 +62,14 @@ class Backlash(RotaryLaw):
         """Return the energy in J of the pressed spring."""
         return max(0.0, *(self._flank(side, twist, 0.0)[0] for side in SIDES)) ** 2 / (2.0 * self.stiffness)
 
-    def lost_power(self, twist: float, rate: float) -> float:
+    def lost_power(self, t: float, twist: float, rate: float) -> float:
         """Return the power in W of the damper, or of a flank that follows the other without force."""
         elastic = sum(side * max(0.0, self._flank(side, twist, rate)[0]) for side in SIDES)
-        return -(self.moment_and_friction(twist, rate)[0] + elastic) * rate
+        return -(self.moment_and_friction(t, twist, rate)[0] + elastic) * rate
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         """Return the moments on the nodes (user function of the connector)."""
-        moment, _ = self.moment_and_friction(self.twist(q), self.slip(q, q_t))
+        moment, _ = self.moment_and_friction(t, self.twist(q), self.slip(q, q_t))
         return [moment * weight for weight in self.weights.tolist()]
 
     def jacobian(

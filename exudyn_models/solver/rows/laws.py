@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import FREE, Mode, RowLaw
-from exudyn_models.forces.slip_kinematics import Floats
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -40,44 +39,18 @@ Share = Callable[[float, bool], float]
 """Function of |T| in N m, and of whether the first shaft drives, for the share of |T| that friction has."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, kw_only=True)
 class RotaryLaw(RowLaw):
-    """Law of rotors with constant ``weights`` of their speeds in the slip, shape (n,), in a model with ``data``."""
+    """Law of a part between rotors in a model with ``data``."""
 
-    weights: FloatArray
     data: Any
 
     def __post_init__(self) -> None:
         self.reference = np.zeros(len(self.weights))
 
-    def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return the weights."""
-        weights: Floats = self.weights.tolist()
-        return weights
-
     def multipliers(self) -> FloatArray:
         """Return the present forces of all constraints, shape (m,)."""
         return np.asarray(self.data.GetAECoordinates(), float)
-
-    def twist(self, q: Floats | FloatArray) -> float:
-        """Return the angle of the slip in rad; ``q`` excludes reference values."""
-        return float(self.weights @ q)
-
-    def mode_at(self, twist: float, rate: float) -> Mode:
-        """Return the mode that a sensor shows."""
-        return self.visible_mode
-
-    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
-        """Return the moment and the friction in N m that sensors show."""
-        return float(self.held_forces()[0]) if self.mode == Mode.LOCKED else 0.0, 0.0
-
-    def lost_power(self, twist: float, rate: float) -> float:
-        """Return the lost power in W."""
-        return -self.moment_and_friction(twist, rate)[1] * rate
-
-    def energy(self, twist: float) -> float:
-        """Return the stored energy in J."""
-        return 0.0
 
     def check_running(self) -> None:
         """Raise ``ValueError`` unless ``solve_dynamic`` switches modes."""
@@ -102,8 +75,48 @@ class OneWayLaw(RotaryLaw):
         return 0.0
 
 
+class GrowingLimit:
+    """Limit that grows with a moment T; ``place`` is that of T among the loads of the model."""
+
+    place: int
+    static_ratio: float
+
+    @property
+    def load(self) -> float:
+        """Present moment T in N m."""
+        raise NotImplementedError
+
+    def limit(self, load: float, direction: int) -> float:
+        """Return the largest friction in N m against a slip in a direction, ±1, at a moment T in N m."""
+        raise NotImplementedError
+
+    def slope_at(self, load: float, direction: int) -> float:
+        """Return the derivative by T of the friction against a slip in a direction, ±1, or 0 without slip."""
+        raise NotImplementedError
+
+    def load_at(self, own: float | None) -> float:
+        """Return the present T of a contact at rest; ``own`` is the part in its group at rest, or None."""
+        raise NotImplementedError
+
+    def limits_at(self, load: float) -> tuple[float, float]:
+        """Return the limits at rest in N m at a moment T."""
+        raise NotImplementedError
+
+    def rest(self, t: float) -> None:
+        """Evaluate load and coefficient at rest."""
+
+    def shares(self, force: float, load: float) -> tuple[Sequence[float], Sequence[FloatArray]]:
+        """Return the shares of both limits that a force at rest needs, and their slopes in force and in T."""
+        values, slopes = list[float](), list[FloatArray]()
+        for limit, way in zip(self.limits_at(load), (1, -1), strict=True):
+            values.append(-way * force / limit)
+            by_load = self.static_ratio * self.slope_at(load, way)
+            slopes.append(np.array([-way / limit, force / limit**2 * by_load]))
+        return values, slopes
+
+
 @dataclass(eq=False)
-class MeshLaw(RotaryLaw):
+class MeshLaw(GrowingLimit, RotaryLaw):
     """Friction of a mesh with the constraint ``item``, whose gradient is ``constraint``, shape (n,).
 
     ``preload`` in N m and ``share`` determine its limit, always zero if the mesh is ``lossless``. ``shifts`` returns
@@ -155,31 +168,24 @@ class MeshLaw(RotaryLaw):
             return -float(self.multipliers()[self.data.GetObjectLTGAE(self.item)[0]])
         return float(self.meshes.now()[0][self.place])
 
-    def moment_and_friction(self, twist: float, rate: float) -> tuple[float, float]:
+    def moment_and_friction(self, t: float, twist: float, rate: float) -> tuple[float, float]:
         """Return T and the friction in N m."""
         locked = self.mode == Mode.LOCKED
-        return self.load, float(self.held_forces()[0]) if locked else self.moment(0.0, rate)
+        return self.load, float(self.held_forces()[0]) if locked else self.moment(t, rate)
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest friction in N m against sliding forward and backward."""
-        return self._limits_at(self._load)
+        return self.limits_at(self._load)
 
-    def _limits_at(self, load: float) -> tuple[float, float]:
+    def load_at(self, own: float | None) -> float:
+        """Return the present T by the forces of constraints."""
+        return self._load
+
+    def limits_at(self, load: float) -> tuple[float, float]:
+        """Return the limits at rest in N m at a moment T."""
         self.largest = max(self.largest, self.preload + abs(load))
         least = max(LEAST, FREE * self.largest)
         return max(self.limit(load, 1), least), max(self.limit(load, -1), least)
-
-    def shares(self, force: float, change: float) -> tuple[Sequence[float], Sequence[FloatArray]]:
-        """Return the shares of both limits that a force at rest needs, and their slopes in force and in T.
-
-        ``change`` is added to the present moment T.
-        """
-        load = self._load + change
-        values, slopes = list[float](), list[FloatArray]()
-        for limit, way in zip(self._limits_at(load), (1, -1), strict=True):
-            values.append(-way * force / limit)
-            slopes.append(np.array([-way / limit, force / limit**2 * self.slope_at(load, way)]))
-        return values, slopes
 
     def moment(self, t: float, spin: float) -> float:
         """Return the friction in N m in slip."""

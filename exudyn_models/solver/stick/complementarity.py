@@ -25,6 +25,9 @@ DEPENDENT = 1e-9
 SUBSETS = 64
 """Largest number of sets of slipping contacts to try, beginning with the smallest."""
 
+CLEARLY = 1e-6
+"""Part of each gradient that those before it do not hold if all are independent, far above ``DEPENDENT``."""
+
 PREFERRED = 1e3
 """Factor on the independent part of preferred gradients; with a tiny part, forces on others would be large."""
 
@@ -181,6 +184,8 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
     remaining contacts in their order.
     """
     rest, lengths = gram, np.diag(gram)
+    if _clearly_independent(gram, lengths):
+        return list(range(len(gram))), np.zeros((0, len(gram)))
     weights = np.zeros(len(gram))
     np.divide(1.0, lengths, out=weights, where=lengths > 0.0)
     weights[list(preferred)] *= PREFERRED
@@ -199,3 +204,14 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
     by_chosen = np.linalg.solve(gram[np.ix_(chosen, chosen)], gram[np.ix_(chosen, others)]).T
     by_chosen[np.abs(by_chosen) < DEPENDENT] = 0.0
     return chosen, np.asarray(by_chosen, float)
+
+
+def _clearly_independent(gram: FloatArray, lengths: FloatArray) -> bool:
+    """Return whether a Cholesky decomposition shows that no gradient depends on others."""
+    if not len(gram) or not lengths.min() > 0.0:
+        return False
+    sizes = np.sqrt(lengths)
+    try:
+        return bool((np.diag(np.linalg.cholesky(gram / np.outer(sizes, sizes))) ** 2 > CLEARLY).all())
+    except np.linalg.LinAlgError:
+        return False

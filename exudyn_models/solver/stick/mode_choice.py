@@ -17,10 +17,11 @@ from scipy.sparse.csgraph import connected_components
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.active_set import LoadedRows
-from exudyn_models.solver.rows.laws import Meshes, MeshLaw, OneWayLaw
+from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, OneWayLaw
+from exudyn_models.solver.rows.moment_loads import Loads
 from exudyn_models.solver.stick.complementarity import rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.resting import Resting
+from exudyn_models.solver.stick.resting import Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
@@ -69,12 +70,15 @@ class ModeChoice:
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
         self._at_meshes = [i for i, one in enumerate(contacts) if isinstance(one.stick, MeshLaw)]
         self._one_way = [i for i, one in enumerate(contacts) if isinstance(one.stick, OneWayLaw)]
-        self._meshes = Meshes(mbs, [one.stick for one in contacts if isinstance(one.stick, MeshLaw)])
+        self._growing = [i for i, one in enumerate(contacts) if isinstance(one.stick, GrowingLimit)]
+        self._loads = Loads(mbs, [one.stick for one in contacts])
+        self._meshes = self._loads.meshes
         locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
         self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
+        self._line: Line | None = None
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
@@ -150,6 +154,10 @@ class ModeChoice:
         self._rows = slips.rows[firsts]
         self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
         self._offsets = 1.0 - np.abs(self._directions)
+        simple = not (self._varying or self._springs or self._resting.groups)
+        self._line = (
+            Line(self._rows, self._directions, self._resting, self._limits, self._data) if simple else None
+        )
         self.survey(t)
         self._slides.survey()
         self.end(())
@@ -197,9 +205,9 @@ class ModeChoice:
         for contact, mode, holding in zip(contacts, modes, self._holding.tolist(), strict=True):
             contact.enter(self._mbs, Mode.OPEN if holding == 0.0 else mode)
         still = [i for i, contact in enumerate(contacts) if contact.mode == Mode.LOCKED]
-        self._meshes.active = False
+        self._loads.act(False)
         _, accelerations, constraints = self._present()
-        self._meshes.active = True
+        self._loads.act(True)
         found = self._slips_that_begin(t, slips, still, accelerations, constraints)
         wanted, first, begun = dict[int, float](), list[int](), list[int]()
         for i in still:
@@ -220,7 +228,7 @@ class ModeChoice:
         for i in still:
             if i not in resting:
                 contacts[i].enter(self._mbs, contacts[i].sliding_mode(found[blocks[i]]))
-        to_loads = slips.to_loads(self._meshes.places)
+        to_loads = self._to_loads(slips)
         self._resting.divide(contacts, slips, resting, self._places, self._resting.rows, to_loads)
         slips.give(wanted, first)
         self._find_effects_of_meshes(slips)
@@ -228,6 +236,10 @@ class ModeChoice:
         held, accelerations, constraints = slips.hold(self._resting.rows, forces)
         constraints[self._resting.places] = -held
         return forces, accelerations, constraints
+
+    def _to_loads(self, slips: Slips) -> FloatArray:
+        """Return the moments that let limits grow, by unit forces along all locks, shape (m, k)."""
+        return self._loads.by_forces(slips.to_loads, [rows.start for rows in slips.sets.blocks])
 
     def _find_effects_of_meshes(self, slips: Slips) -> None:
         """Find how friction of meshes changes their moments while the present locks hold."""
@@ -244,17 +256,18 @@ class ModeChoice:
         contacts: Sequence[int],
         rows: Sequence[int],
         constraints: FloatArray,
-        reduction: FloatArray,
+        sliding: FloatArray,
     ) -> LoadedRows | None:
-        if not (self._at_meshes or self._one_way):
+        if not (self._growing or self._one_way):
             return None
         laws = [self._contacts[i].stick for i in contacts]
+        to_loads = self._to_loads(slips)[:, rows]
         return LoadedRows(
-            -constraints[self._meshes.places],
-            slips.to_loads(self._meshes.places)[:, rows],
-            [law if isinstance(law, MeshLaw) else None for law in laws],
+            self._loads.without(to_loads, constraints),
+            to_loads,
+            [law if isinstance(law, GrowingLimit) else None for law in laws],
             np.array([int(self._contacts[i].mode) for i in contacts], dtype=int),
-            reduction,
+            sliding,
         )
 
     def _slips_that_begin(
@@ -266,7 +279,7 @@ class ModeChoice:
         constraints: FloatArray,
     ) -> FloatArray:
         """Return the slip accelerations of the contacts ``still``; all others are arbitrary."""
-        still = [*still, *(i for i in self._at_meshes if i not in still)]
+        still = [*still, *(i for i in self._growing if i not in still)]
         contacts = [self._contacts[i] for i in still]
         rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
         for i in self._varying:
@@ -274,13 +287,17 @@ class ModeChoice:
         static = self._limits[list(still)]
         ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
         overloads = np.array([contact in self._overloaded for contact in contacts])
-        shrunk = (SHRUNK * overloads * static.max(axis=1, initial=0.0))[:, None]
-        loaded = self._loaded(slips, still, rows, constraints, 1.0 - SHRUNK * overloads)
+        growing = np.array([i in self._growing for i in still], dtype=bool)[:, None]
+        largest = np.where(growing, static, static.max(axis=1, initial=0.0)[:, None])
+        shrunk = SHRUNK * overloads[:, None] * largest
+        loaded = self._loaded(slips, still, rows, constraints, static / ratios)
         if loaded is not None:
             static[[i in self._one_way for i in still]] = 0.0, math.inf
             shrunk = np.where(np.isfinite(static), shrunk, 0.0)
         sliding = np.minimum(static - shrunk, static / ratios)
-        slipped = np.array([contact in self._slipped for contact in contacts], dtype=bool)[:, None]
+        slipped = np.array([one in self._slipped or one.stick.slides for one in contacts], dtype=bool)[
+            :, None
+        ]
         found = np.zeros(len(slips.rows))
         found[rows] = rest_or_slip(
             slips.to_rates[np.ix_(rows, rows)],
@@ -321,6 +338,10 @@ class ModeChoice:
         They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
         rest, or ±1 without load or coefficient.
         """
+        if self._line is not None:
+            now = self._line.margins(self._data)
+            if (now[self._resting.alone] >= NEAR).all():
+                return now
         springs = [spring.margin(self._mbs, t) for spring in self._springs]
         return np.append(self._margins_of_contacts(t), springs)
 

@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.solver.items import CURRENT
-from exudyn_models.solver.rows.laws import MeshLaw
+from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw
 from exudyn_models.solver.stick.complementarity import independent_rows
 from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
@@ -53,19 +53,28 @@ class Group:
         This share is as small as possible, or below ``enough``.
         """
         held = -self.mbs.systemData.GetAECoordinates()[self.places]
-        limits = np.array([contact.capacities(t) for contact in self.contacts])
+        limits = [
+            (0.0, 0.0) if isinstance(contact.stick, GrowingLimit) else contact.capacities(t)
+            for contact in self.contacts
+        ]
         start = np.concatenate((held, np.zeros(len(self.by_chosen))))
+
+        for contact in self.contacts:
+            if isinstance(contact.stick, GrowingLimit):
+                contact.stick.rest(t)
 
         def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:
             forces = start + self._undetermined @ x
             values, slopes = list[float](), list[FloatArray]()
             for contact, rows, limit in zip(self.contacts, self.blocks, limits, strict=True):
                 by_x, law = self._undetermined[rows], contact.stick
-                if isinstance(law, MeshLaw):
-                    by_x = np.vstack((by_x, self.to_loads[law.place] @ self._undetermined))
-                    shares_of = law.shares(float(forces[rows[0]]), float(by_x[1] @ x))
+                if isinstance(law, GrowingLimit):
+                    to_load = self.to_loads[law.place]
+                    by_x = np.vstack((by_x, to_load @ self._undetermined))
+                    load = law.load_at(float(to_load @ start) if to_load.any() else None)
+                    shares_of = law.shares(float(forces[rows[0]]), load + float(by_x[1] @ x))
                 else:
-                    shares_of = contact.shares(forces[rows], limit)
+                    shares_of = contact.shares(forces[rows], np.array(limit))
                 values += shares_of[0]
                 slopes += [slope @ by_x for slope in shares_of[1]]
             return np.array(values), np.array(slopes)
@@ -123,9 +132,12 @@ class Resting:
         links = np.zeros((len(resting), len(resting)))
         for i, shares in zip(others, by_chosen, strict=True):
             links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares)]]] = 1.0
-        count, of_group = len(resting), np.arange(len(resting))
-        if others:
-            count, of_group = connected_components(links, directed=False)
+        alone = not others and not any(isinstance(contacts[i], PlanarContact) for i in resting)
+        if alone:
+            self.alone = list(resting)
+        count, of_group = (
+            (0, np.zeros(len(resting))) if alone else connected_components(links, directed=False)
+        )
         of_first, of_rest = of_group[owner[chosen]], of_group[owner[others]]
         for number in range(count):
             own, first, rest = (np.flatnonzero(group == number) for group in (of_group, of_first, of_rest))
@@ -166,6 +178,32 @@ class Resting:
             if found.intersection(group.contacts):
                 found.update(group.contacts)
         return found
+
+
+class Line:
+    """Margins of contacts with constant limits that share no load: the least of two lines in the model's unknowns."""
+
+    def __init__(
+        self, rows: FloatArray, directions: FloatArray, resting: Resting, limits: FloatArray, data: Any
+    ) -> None:
+        count, size = rows.shape
+        slopes = np.zeros((2, count, size + data.AEsize()))
+        slopes[:, :, :size], self._constants = (
+            directions[:, None] * rows,
+            np.tile(1.0 - np.abs(directions), (2, 1)),
+        )
+        alone, places = resting.alone, size + resting.alone_places
+        largest = limits[alone].max(axis=1)
+        for side, sign in enumerate((1.0, -1.0)):
+            self._constants[side, alone] = limits[alone, 1 - side] / largest
+            slopes[side, alone, places] = sign / largest
+        self._slopes = slopes
+
+    def margins(self, data: Any) -> FloatArray:
+        """Return the present margins, shape (contacts,)."""
+        velocities, forces = data.GetODE2Coordinates_t(CURRENT, False), data.GetAECoordinates(CURRENT, False)
+        both = self._constants + self._slopes @ np.concatenate((velocities, forces))
+        return np.asarray(np.minimum(both[0], both[1]))
 
 
 def least_maximum(

@@ -15,7 +15,7 @@ from exudyn_models.solver.contacts import laws_of
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import LEAST as UNLOADED
-from exudyn_models.solver.rows.laws import MeshLaw, RotaryLaw
+from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
@@ -82,13 +82,13 @@ class StickingContact:
 
     def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
         """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
-        self.stick.mode = mode
-        if self.stick.entered == (mode, *locks):
+        self.stick.mode, before = mode, self.stick.entered
+        if before == (mode, *locks):
             return
         self.stick.entered = mode, *locks
         for i, lock in enumerate(self.stick.locks):
             mbs.SetObjectParameter(lock, "activeConnector", i in locks)
-        if (forces := self.stick.constant_forces) is not None:
+        if before[:1] != (mode,) and (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def omit_user_functions(self, mbs: Any) -> None:
@@ -165,7 +165,7 @@ class StickingContact:
 
 
 class RotorCoupling(StickingContact):
-    """One-way clutch or mesh, which never opens."""
+    """One-way clutch, mesh or contact whose load grows with a moment, which never opens."""
 
     def holding(self, t: float) -> float:
         """Return a moment in N m without effect on the choice of modes; the true limits depend on the moments."""
@@ -318,7 +318,8 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
     if planar is not None and any(isinstance(contact, RotorCoupling) for contact in found):
         raise ValueError(
             f"object {planar.item}: a contact in the plane that sticks exactly cannot be combined with a gear with "
-            "losses or a one-way clutch; give the contact a regularisation, or hold it on one axis by joints"
+            "losses, a one-way clutch or a load that grows with a moment; give the contact a regularisation, or "
+            "hold it on one axis by joints"
         )
     return sorted(found, key=lambda contact: isinstance(contact, SpringFlanks))
 
@@ -326,7 +327,7 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
 def _kind(part: RowLaw) -> type[StickingContact]:
     if isinstance(part, Backlash):
         return SpringFlanks
-    if isinstance(part, RotaryLaw):
+    if isinstance(part, (RotaryLaw, GrowingLimit)):
         return RotorCoupling
     return StickingContact if part.on_axis else PlanarContact
 

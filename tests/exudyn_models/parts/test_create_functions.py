@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from free_bodies import all_states, changes_of, new_model, planar_body, run_explicitly
+from free_bodies import all_states, changes_of, new_model, planar_body, rotor, run_explicitly
 from pairs_of_bodies import DISC, MASTER, bodies_of
 
 from exudyn_models import add_radial_support, add_ring_friction
@@ -44,6 +44,23 @@ def test_create_functions_add_the_same_parts(add, create, options):
         run_explicitly(mbs, 0.05, 10)
         ends.append(all_states(mbs))
     np.testing.assert_array_equal(ends[0], ends[1])
+
+
+def test_couplings_are_created_between_bodies_by_their_numbers():
+    mbs = new_model()
+    ground = mbs.CreateGround()
+    shafts = [rotor(mbs, 1.0, speed) for speed in (2.0, 1.0)]
+    gear = mbs.CreateGear([*shafts], ratio=2.0, efficiency=0.9)
+    brake = mbs.CreateSliderFriction(
+        [ground, shafts[0]], frictionCoefficient=0.5, normalLoad=10.0, secondRadius=0.2
+    )
+    assert [[int(node) for node in one.nodes] for one in (gear, brake)] == [[0, 1], [0]]
+    # The second shaft drives: J₁ + J₂·η/i² = 1.225 kg m² against 1 N m.
+    assert [time for time, *_ in changes_of(mbs, 3.0, 1e-3)][:1] == pytest.approx([2.0 * 1.225], abs=1e-6)
+    with pytest.raises(TypeError, match="second_radius is not an argument; these are frictionCoefficient"):
+        mbs.CreateSliderFriction([ground, shafts[0]], second_radius=0.2)
+    with pytest.raises(ValueError, match="it must be a list of three bodies, case, left, right"):
+        mbs.CreateDifferential(shafts)
 
 
 def test_an_invalid_pair_of_bodies_is_refused():

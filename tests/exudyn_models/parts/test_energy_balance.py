@@ -2,6 +2,7 @@
 
 import math
 
+import exudyn as exu
 import numpy as np
 import pytest
 from free_bodies import (
@@ -12,9 +13,10 @@ from free_bodies import (
     rate_of,
     rotor,
     run_explicitly,
+    settings_of,
 )
 
-from exudyn_models import add_energy_balance, spring_energy
+from exudyn_models import add_energy_balance, solve_dynamic, spring_energy
 from exudyn_models.parts.energy_balance import EnergyBalance
 
 INERTIA, STIFFNESS, DAMPING, TORQUE, SPEED, UNTIL = 2.0, 18.0, 0.4, 3.0, 1.5, 2.0
@@ -93,3 +95,21 @@ def test_rounding_of_a_heavy_flywheel_is_not_an_imbalance():
     assert EnergyBalance(heavy.times, {"drive": np.array([0.0, 1e5])}, {}, stored).imbalance != ""
     light = EnergyBalance(heavy.times, heavy.gains, {}, stored - 1e18)
     assert "off by 1.3e+02 J at t = 1 s" in light.imbalance
+
+
+@pytest.mark.parametrize("solver", ["TrapezoidalIndex2", "GeneralizedAlpha"])
+def test_implicit_steps_evaluate_powers_at_their_ends_only(solver):
+    """Works are those of the trapezoidal rule, here of 3 t² over steps h: 1 + h²/2 J."""
+    mbs, calls = new_model(), []
+    rotor(mbs, 1.0, 0.0)
+
+    def power(mbs, t):
+        calls.append(t)
+        return 3.0 * t * t
+
+    read = add_energy_balance(mbs, gains={"motor": power}, losses={})
+    solve_dynamic(mbs, settings_of(1.0, 100), getattr(exu.DynamicSolverType, solver))
+    with pytest.warns(RuntimeWarning, match="energy balance is off"):
+        balance = read()
+    assert balance.gains["motor"][-1] == pytest.approx(1.0 + 0.5e-4, abs=1e-12)
+    assert len(calls) < 110

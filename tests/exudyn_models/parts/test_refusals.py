@@ -24,7 +24,7 @@ ANNULUS = add_ring_friction, LAW | {"inner_radius": 0.08, "outer_radius": 0.12}
 NATIVE = add_native_friction, POINTS | {"reach": 1.0}
 SUPPORT = add_radial_support, {"stiffness": 1.0}
 UNKNOWN = object()
-KINDS = "NodeRigidBody2D, NodeRigidBodyRotVecLG, NodeRigidBodyRxyz or NodeRigidBodyEP"
+KINDS = "NodeRigidBody2D, NodeRigidBodyRotVecLG, NodeRigidBodyRxyz, NodeRigidBodyEP, NodePoint2D or NodePoint"
 BY_NAME = "a function may take only arguments named time, radius, slip_speed, relative_spin"
 
 WRONG = [
@@ -154,7 +154,7 @@ UNKNOWN_BODIES = {
     False: "= False is of type bool: it must be a NodeIndex",
     1.5: r"= 1\.5 is of type float: it must be a NodeIndex",
     "disc": "= 'disc' is of type str: it must be a NodeIndex, the ObjectIndex of a body or",
-    exu.ObjectIndex(2): "2 is an ObjectMassPoint: it must be a body with a node",
+    exu.ObjectIndex(2): "2 is an ObjectGenericODE2: it must be a body with a node",
 }
 
 
@@ -163,11 +163,12 @@ def test_nodes(part):
     add, right, master_name, kinds = PARTS[part]
     mbs = new_model()
     master, disc = rotor(mbs, 1.0, 0.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
-    point = mbs.AddNode(items.NodePoint())
-    mbs.AddObject(items.ObjectMassPoint(nodeNumber=point))
+    one = {"referenceCoordinates": [0.0], "initialCoordinates": [0.0], "initialCoordinates_t": [0.0]}
+    point = mbs.AddNode(items.NodeGenericODE2(**one, numberOfODE2Coordinates=1))
+    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[point], massMatrix=[[1.0]]))
     wrong = [(master_name, index, disc, message) for index, message in UNKNOWN_BODIES.items()]
     wrong += [("disc_node", master, index, message) for index, message in UNKNOWN_BODIES.items()]
-    wrong += [(master_name, point, disc, f"2 is a NodePoint: it must be a {kinds}")]
+    wrong += [(master_name, point, disc, f"2 is a NodeGenericODE2: it must be a {kinds}")]
     wrong += [
         ("disc_node", disc, same, f"1 is also the {master_name}") for same in (disc, exu.ObjectIndex(1))
     ]

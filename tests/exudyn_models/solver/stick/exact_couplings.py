@@ -52,6 +52,20 @@ class Mesh:
         return self.preload + shares * np.abs(load)
 
 
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """Friction that grows by ``arm`` times the moment of the row ``part``: of its mesh, or else its friction."""
+
+    weights: tuple[float, ...]
+    capacity: float
+    arm: float
+    part: int
+    static_ratio: float = 1.0
+
+    def limit(self, load, direction, at_rest):
+        return (self.static_ratio if at_rest else 1.0) * (self.capacity + self.arm * np.abs(load))
+
+
 @dataclass(frozen=True)
 class Couplings:
     """Rotors with inertias (kg m²), initial speeds (rad/s), moments (N m) and rows."""
@@ -98,7 +112,7 @@ def _decide(train, time, speeds, before):
 
 def _consistent(train, time, speeds, modes, may_slip, slipped):
     """Return the phase with the fewest slipping rows; rows not in ``slipped``, if given, slip statically."""
-    meshes = sum(isinstance(row, Mesh) for row in train.rows)
+    loads = sum(isinstance(row, (Mesh, Loaded)) for row in train.rows)
     static = [slipped is not None and k in may_slip and k not in slipped for k in range(len(modes))]
     sliding = [slipped is not None and k in slipped for k in range(len(modes))]
     for count in range(len(may_slip) + 1):
@@ -107,7 +121,7 @@ def _consistent(train, time, speeds, modes, may_slip, slipped):
             for directions in product(*ways):
                 tried = modes.copy()
                 tried[moving] = directions
-                for signs in product((1, -1), repeat=meshes):
+                for signs in product((1, -1), repeat=loads):
                     phase = _Phase(train, time, speeds, tried, signs, static, sliding)
                     if phase.is_consistent(moving, directions):
                         return phase
@@ -115,7 +129,7 @@ def _consistent(train, time, speeds, modes, may_slip, slipped):
 
 
 class _Phase:
-    """Motion in constant ``modes``, with moments of the meshes of constant ``signs``."""
+    """Motion in constant ``modes``, with moments of meshes and of parts that load others of constant ``signs``."""
 
     def __init__(self, train, start, speeds, modes, signs, static, sliding):
         self.train, self.start, self.initial, self.modes, self.sliding = train, start, speeds, modes, sliding
@@ -123,6 +137,14 @@ class _Phase:
         self.meshes = [k for k, row in enumerate(rows) if isinstance(row, Mesh)]
         self.signs = np.array(signs)
         size = rotors + len(self.meshes)
+        #: Places of the moments that let friction grow.
+        self.loads = {k: rotors + i for i, k in enumerate(self.meshes)}
+        self.loads |= {
+            k: self.loads.get(row.part, size + row.part)
+            for k, row in enumerate(rows)
+            if isinstance(row, Loaded)
+        }
+        sign_of = dict(zip(self.loads, signs, strict=True))
         system, self.right = np.zeros((size + len(rows),) * 2), np.zeros(size + len(rows))
         system[:rotors, :rotors] = np.diag(train.inertias)
         for i, k in enumerate(self.meshes):
@@ -135,11 +157,13 @@ class _Phase:
                 continue
             system[size + k, size + k] = 1.0
             if isinstance(row, Mesh):
-                i = self.meshes.index(k)
-                system[size + k, rotors + i] = mode * row.share(signs[i], mode) * signs[i]
+                system[size + k, self.loads[k]] = mode * row.share(sign_of[k], mode) * sign_of[k]
                 self.right[size + k] = -mode * row.preload
             else:
                 self.right[size + k] = -mode * row.limit(0.0, mode, static[k])
+                if isinstance(row, Loaded):
+                    by_load = row.limit(1.0, mode, static[k]) - row.limit(0.0, mode, static[k])
+                    system[size + k, self.loads[k]] += mode * by_load * sign_of[k]
         self.solve = np.linalg.inv(system)
 
     def _all(self, t, read):
@@ -158,7 +182,7 @@ class _Phase:
     def slips(self, t):
         slips = np.array([row.weights for row in self.train.rows]) @ self.speeds(t)
         sliding = self.modes != 0
-        loads = self.now(t)[len(self.initial) : len(self.initial) + len(self.meshes)]
+        loads = self.now(t)[list(self.loads.values())]
         return [*(self.modes[sliding, None] * slips[sliding]), *(self.signs[:, None] * loads)]
 
     def margin(self, t):
@@ -168,7 +192,7 @@ class _Phase:
         for k, row in enumerate(self.train.rows):
             if self.modes[k] == 0:
                 force = now[rotors + len(self.meshes) + k]
-                load = now[rotors + self.meshes.index(k)] if k in self.meshes else 0.0 * t
+                load = now[self.loads[k]] if k in self.loads else 0.0 * t
                 for way in (1, -1):
                     least = np.minimum(least, row.limit(load, way, not self.sliding[k]) + way * force)
         return least
@@ -177,7 +201,7 @@ class _Phase:
         t = np.array([self.start + NEXT])
         now = self.now(t)[:, 0]
         rates = np.array([row.weights for row in self.train.rows])[moving] @ now[: len(self.initial)]
-        loads = now[len(self.initial) :][: len(self.meshes)] * self.signs
+        loads = now[list(self.loads.values())] * self.signs
         return (
             (rates * directions > ROUNDING).all()
             and (loads >= -ROUNDING).all()

@@ -6,8 +6,18 @@ from itertools import pairwise
 import exudyn as exu
 import numpy as np
 import pytest
-from exact_couplings import Couplings, Friction, Mesh, OneWay, exact_motion_of
-from free_bodies import changes_of, drive, items, new_model, planar_body, rate_of, rotor, settings_of
+from exact_couplings import Couplings, Friction, Loaded, Mesh, OneWay, exact_motion_of
+from free_bodies import (
+    changes_of,
+    coordinate,
+    drive,
+    items,
+    new_model,
+    planar_body,
+    rate_of,
+    rotor,
+    settings_of,
+)
 from scipy.optimize import brentq
 from test_random_trains import locks, random_moment
 
@@ -18,6 +28,7 @@ from exudyn_models import (
     add_one_way_clutch,
     add_planetary,
     add_ring_friction,
+    add_slider_friction,
 )
 
 IMPLICIT = [exu.DynamicSolverType.TrapezoidalIndex2, exu.DynamicSolverType.GeneralizedAlpha]
@@ -28,13 +39,16 @@ TIMES, SPEEDS = 1e-5, 1e-4  # s, rad/s
 class RandomTrain:
     """A random tree of rotors: its exact description, and functions that add the same parts to a model."""
 
-    def __init__(self, seed):
+    def __init__(self, seed, loaded=False, kinds=("rotor",)):
         self.rng = rng = np.random.default_rng(seed)
-        self.count = int(rng.integers(2, 9))
-        self.rows, self.adds, self.grounded = [], [], False
+        self.count = int(rng.integers(2, 5 if loaded else 9))
+        self.rows, self.adds, self.parts, self.grounded = [], [], [], False
+        self.kinds = [kinds[k] for k in np.random.default_rng(seed).integers(len(kinds), size=self.count)]
         self.speeds, k = [float(rng.choice([0.0, 2.0, -1.5]))], 1
         while k < self.count:
             kinds = [self.clutch, self.one_way, self.gear]
+            if loaded and self.rows:
+                kinds += [self.loaded] * 3
             if k + 1 < self.count:
                 kinds += [self.planetary, self.differential]
             k += kinds[rng.integers(len(kinds))](int(rng.integers(k)), k)
@@ -59,13 +73,28 @@ class RandomTrain:
             self.speeds.append(self.rng.choice([self.speeds[j], 0.0, 3.0]))
         capacity, ratio = self.rng.uniform(1.0, 8.0), self.rng.uniform(1.0, 1.5)
         self.rows.append(Friction(self.weights([(j, -1.0), (k, 1.0)]), capacity, ratio))
+        law = {"friction_coefficient": 1.0, "normal_load": capacity, "static_ratio": ratio}
+        self.adds.append(lambda mbs, at: self.friction(mbs, at(j), at(k), **law))
+        return 1
+
+    def friction(self, *bodies, **law):
+        if set(self.kinds) == {"rotor"}:
+            return add_ring_friction(*bodies, contact_radius=1.0, **law)
+        return add_slider_friction(*bodies, **law)
+
+    def loaded(self, j, k):
+        """Add a clutch that a part before it loads."""
+        self.speeds.append(self.rng.choice([self.speeds[j], 0.0, 3.0]))
+        capacity, gain, ratio = self.rng.uniform((0.0, 0.1, 1.0), (3.0, 1.0, 1.5)).tolist()
+        part = int(self.rng.integers(len(self.rows)))
+        self.rows.append(Loaded(self.weights([(j, -1.0), (k, 1.0)]), capacity, 0.5 * gain, part, ratio))
         law = {
-            "contact_radius": 1.0,
-            "friction_coefficient": 1.0,
-            "normal_load": capacity,
+            "friction_coefficient": 0.5,
+            "normal_load": 2.0 * capacity,
+            "load_gain": gain,
             "static_ratio": ratio,
         }
-        self.adds.append(lambda mbs, at: add_ring_friction(mbs, at(j), at(k), **law))
+        self.adds.append(lambda mbs, at: self.friction(mbs, at(j), at(k), **law, load_part=self.parts[part]))
         return 1
 
     def one_way(self, j, k):
@@ -118,21 +147,63 @@ def check(random, solver):
     train = random.train
     exact, speeds = exact_motion_of(train, END)
     mbs = new_model()
-    nodes = [rotor(mbs, *pair) for pair in zip(train.inertias, train.speeds, strict=True)]
-    for node, moment in zip(nodes, train.moments, strict=True):
-        drive(mbs, node, lambda t, moment=moment: float(moment(t)))
-    parts = [int(add(mbs, lambda k: None if k is None else nodes[k]).item) for add in random.adds]
+    bodies = [body(mbs, *one) for one in zip(random.kinds, train.inertias, train.speeds, strict=True)]
+    for (_, marker), moment in zip(bodies, train.moments, strict=True):
+        mbs.AddLoad(
+            items.LoadCoordinate(
+                markerNumber=marker, loadUserFunction=lambda mbs, t, _, moment=moment: float(moment(t))
+            )
+        )
+    random.parts = []
+    for add in random.adds:
+        random.parts.append(add(mbs, lambda k: None if k is None else bodies[k][0]))
+    parts = [int(part.item) for part in random.parts]
     changes = changes_of(mbs, END, STEP, solver, breaks=train.breaks())
     kinds, times = locks([(time, parts.index(item), *modes) for time, item, *modes in changes])
     right_kinds, right_times = locks([(one.time, one.link, one.before, one.after) for one in exact])
     assert kinds == right_kinds
     np.testing.assert_allclose(times, right_times, atol=TIMES, rtol=0.0)
-    np.testing.assert_allclose([rate_of(mbs, node) for node in nodes], speeds, atol=SPEEDS, rtol=0.0)
+    rates = []
+    for _, marker in bodies:
+        at = mbs.GetMarker(marker)
+        found = mbs.GetNodeOutput(at["nodeNumber"], exu.OutputVariableType.Coordinates_t)
+        rates.append(np.atleast_1d(found)[at["coordinate"]])
+    np.testing.assert_allclose(rates, speeds, atol=SPEEDS, rtol=0.0)
     return len(exact)
+
+
+def body(mbs, kind, inertia, speed):
+    """Add a freedom of a kind; return the argument that parts take for it, and a marker of its coordinate."""
+    if kind == "rotor":
+        node = rotor(mbs, inertia, speed)
+        return node, coordinate(mbs, node)
+    if kind == "slider":
+        node = mbs.AddNode(items.Node1D(initialVelocities=[speed]))
+        return mbs.AddObject(items.ObjectMass1D(nodeNumber=node, mass=inertia)), coordinate(mbs, node)
+    if kind == "point":
+        node = mbs.AddNode(items.NodePoint2D(initialVelocities=[0.3, speed]))
+        mbs.AddObject(items.ObjectMassPoint2D(nodeNumber=node, mass=inertia))
+    else:
+        node = planar_body(mbs, 1.0, inertia, [0.0] * 3, [0.0, 0.1, speed])
+    marker = coordinate(mbs, node, 1 if kind == "point" else 2)
+    return marker, marker
 
 
 SEEDS = (2, 5, 7, 10, 13, 17, 22, 33)
 """At the start of 10, a clutch slips forward and backward within one step."""
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_random_trains_with_loads_by_moments_of_parts_move_exactly(solver):
+    """In 32 and 44 a sliding differential loads a clutch on one of its sides."""
+    assert sum(check(RandomTrain(seed, loaded=True), solver) for seed in (1, 4, 9, 32, 44, 60)) > 9
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_random_trains_of_sliders_points_and_bodies_move_exactly(solver):
+    """The parts act on positions of sliders and points, and on angles of planar bodies."""
+    trains = (RandomTrain(seed, kinds=("rotor", "slider", "point", "body")) for seed in SEEDS)
+    assert sum(check(train, solver) for train in trains) > 25
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)
