@@ -30,6 +30,7 @@ exclude_patterns = ["conf.py"]
 
 highlight_language = "text"
 
+smartquotes_action = "qe"  # keeps the dashes of options
 myst_heading_anchors = 3
 myst_fence_as_directive = ["math"]
 html_math_renderer = "mathml"
