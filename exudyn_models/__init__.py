@@ -40,9 +40,9 @@ from exudyn_models.parts.rotational.torques import (
 )
 from exudyn_models.parts.rotational.torsional_spring import add_torsional_spring
 from exudyn_models.parts.thermal_node import ThermalNode, add_thermal_node
+from exudyn_models.solver.checks.step_limit import largest_stable_step
 from exudyn_models.solver.linear.locked_state import ContactState, Linearisation, linearise
 from exudyn_models.solver.solve_dynamic import solve_dynamic
-from exudyn_models.solver.step_limit import largest_stable_step
 from exudyn_models.solver.stick.sticking_contacts import ModeChange
 
 __all__ = [

@@ -142,23 +142,6 @@ class Motion:
         return "✗" if not self.converges else "✓" if self.conclusive else "?"
 
 
-Part = (
-    Friction
-    | Scales
-    | Creep
-    | History
-    | Shares
-    | Lag
-    | Repeat
-    | Motion
-    | Output
-    | Course
-    | Patch
-    | Joint
-    | float
-)
-
-
 def friction(engine: Engine) -> Friction:
     """Return the friction law of blocks on a plane at rest."""
     values = _slides(engine, probes.headings()).values.copy()
@@ -388,9 +371,9 @@ PROBES: dict[str, type[Any]] = {
 """Parts that identify the friction law."""
 
 
-def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
+def parts_of(engine: Engine) -> dict[str, Callable[[Engine], object]]:
     """Return the measurements that apply to an engine by name, in their order."""
-    parts: dict[str, Callable[[Engine], Part]] = {}
+    parts: dict[str, Callable[[Engine], object]] = {}
     if engine.simulates(probes.SLIDE):
         parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}
         parts |= {"support": support, "far": far, "repeat": repeat, "course": course}

@@ -189,8 +189,7 @@ def slides(
         speed, free = abs(push.velocity), push.free_slip(times)
         noise = 3.0 * engine.noise * system.mass * speed / (system.friction_force * push.lasts)
         left = 1.0 - np.max(np.abs(slip - free)) / np.max(np.abs(free))
-        mean_slip = np.mean(np.abs(slip))
-        distance = np.mean(np.abs(z))
+        mean_slip, distance = np.mean(np.abs(slip)), np.mean(np.abs(z))
         conditions = system.mass, system.friction_force, mean_slip, system.disc_speed, distance
         found.append([*vectors, *conditions, speed, abs(begun), noise, left])
     return np.array(found)
@@ -201,8 +200,8 @@ FAR = 100.0  # distance from the axis in m
 
 def far_away(engine: Engine, tolerance: float) -> FloatArray:
     """Return the friction force against a slide at the distance ``FAR``, divided by μN, shape (1,)."""
-    (found,) = slides(engine, [Push.of(SLIDE.mass, FRICTION, SPEED, complex(FAR))], tolerance)
-    return np.array([-found[0]])
+    ((force, *_),) = slides(engine, [Push.of(SLIDE.mass, FRICTION, SPEED, complex(FAR))], tolerance)
+    return np.array([-force])
 
 
 def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:

@@ -13,8 +13,8 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
+from exudyn_models.solver.checks.jumps import watch_powers
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, at_assembly, items, node_sensor
-from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.solver_run import quiet
 from exudyn_models.solver.starting_rates import Works
 from reference_model.systems import FloatArray, positive_number, require_callable, require_kind

@@ -16,9 +16,9 @@ from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
+from exudyn_models.solver.checks.jumps import watch_powers
 from exudyn_models.solver.contacts import Contact, motion_of, places_of, present_item
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
-from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import FloatArray, require_choice
 

@@ -31,14 +31,14 @@ from exudyn_models.solver.breaks import (
     take_samples,
     with_samples,
 )
+from exudyn_models.solver.checks.jumps import JumpCheck
+from exudyn_models.solver.checks.steep_laws import peaks_resolved
+from exudyn_models.solver.checks.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.contacts import find_again
-from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates, works_at_step_ends
-from exudyn_models.solver.steep_laws import peaks_resolved
-from exudyn_models.solver.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.stick.sticking_contacts import (
     ModeChange,
     StickingContact,

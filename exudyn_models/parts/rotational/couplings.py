@@ -15,9 +15,9 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import RowLaw
 from exudyn_models.parts.connector import add_connector
+from exudyn_models.solver.checks.jumps import watch_powers
 from exudyn_models.solver.contacts import Coupling, motion_of, register
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
-from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import MeshLaw
 from reference_model.systems import FloatArray, require_choice, shown

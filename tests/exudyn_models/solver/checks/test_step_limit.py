@@ -35,7 +35,7 @@ from exudyn_models.forces.friction_laws import (
 )
 from exudyn_models.forces.laws.places import point_regularisation, ring_places, table_of
 from exudyn_models.forces.stick_dampers import slip_dampers
-from exudyn_models.solver.step_limit import INTERVALS
+from exudyn_models.solver.checks.step_limit import INTERVALS
 
 SOLVERS = exu.DynamicSolverType
 

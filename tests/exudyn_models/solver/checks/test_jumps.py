@@ -8,7 +8,7 @@ import pytest
 from free_bodies import new_model, rotor, settings_of
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
-from exudyn_models.solver.jumps import JumpCheck
+from exudyn_models.solver.checks.jumps import JumpCheck
 
 pytestmark = pytest.mark.filterwarnings("ignore:the energy balance is off")  # a load jumps within a step
 
@@ -112,7 +112,7 @@ def test_close_jumps_a_small_jump_and_a_rise_within_a_step_are_reported(solver):
 
 @pytest.mark.parametrize("step", range(3, 9))
 def test_a_jump_is_reported_once_at_any_place_in_a_batch_of_steps(step, monkeypatch):
-    monkeypatch.setattr("exudyn_models.solver.jumps.TOGETHER", 8)
+    monkeypatch.setattr("exudyn_models.solver.checks.jumps.TOGETHER", 8)
     load, solver = lambda time: 800.0 * (time > (step + 0.5) * STEP), exu.DynamicSolverType.TrapezoidalIndex2
     (message,), _ = run(load, solver)
     assert f"between t = {step * STEP:.9g} s and {(step + 1) * STEP:.9g} s: the energy" in message
@@ -133,7 +133,7 @@ def test_rows_at_the_same_time_do_not_overflow():
 
 @pytest.mark.parametrize(("later", "told"), [(1.0, 1), (1e3, 0)])
 def test_a_jump_is_noise_if_powers_become_much_larger_after_it(later, told, monkeypatch):
-    monkeypatch.setattr("exudyn_models.solver.jumps.TOGETHER", 8)
+    monkeypatch.setattr("exudyn_models.solver.checks.jumps.TOGETHER", 8)
     mbs = new_model()
     add_energy_balance(mbs, gains={}, losses={"brake": lambda mbs, t: 0.0})
     mbs.Assemble()

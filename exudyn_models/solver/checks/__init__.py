@@ -1,0 +1,1 @@
+"""Checks that steps resolve a model, before and during a run."""
