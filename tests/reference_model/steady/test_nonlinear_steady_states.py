@@ -56,7 +56,7 @@ def test_pin_ends_by_sticking_if_the_support_would_carry_it_faster_than_the_disc
     pin = centred(replace(FIG_5, friction_force=0.3), **support)
     assert whirls(pin) == ()
     reason = why_no_whirl(pin)
-    assert f"{formulas_turning(pin):g} rad/s at which the support carries the pin" in reason
+    assert f"|disc_speed| > {formulas_turning(pin):g} rad/s" in reason
     assert formulas_turning(pin) > pin.disc_speed
     trajectory = simulate(pin, [0.5, 0.0, 0.0, 0.5], np.linspace(0.0, 200.0, 201))
     assert trajectory.phases[-1].kind == "stick"
