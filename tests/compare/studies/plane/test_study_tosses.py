@@ -232,7 +232,7 @@ def test_the_text_contains_the_numbers_of_the_measurements():
         "rim: {:.3f} if the edges were sharp, {:.3f} on the flat face".format(*others[:2]),
         "four corners leave {:.3f} and a rim with sharp edges {:.3f}".format(*others[2:4]),
         f"leaves {others[4]:.3f}. This is {(others[4] - share) / error:.1f} standard errors",
-        "half of {:.1f} ± {:.1f} times the mean".format(*by_spin),
+        "c = {:.1f} ± {:.1f}".format(*by_spin),
         "slope of {:.1f} ± {:.1f} mrad".format(*slides.constants["slope_mrad"]),
     ):
         assert words in text
