@@ -299,7 +299,7 @@ class Claim:
 
     @property
     def _open(self) -> NDArray[np.bool_]:
-        """True if there is no error estimate, or if a number appears at one tolerance only."""
+        """True without an error estimate, or if a number appears at a single tolerance."""
         total = self.budget.total
         return np.asarray(np.isfinite(self.measured) & np.isnan(total) | np.isinf(total))
 

@@ -13,12 +13,11 @@ from exudyn_models.forces.friction_laws import (
     slip_potential_of_contact,
 )
 from exudyn_models.forces.jit import KeptOnDisk, as_arrays, compiled
-from exudyn_models.forces.laws.tables import kept, number_at
 from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, SIZES, Kinds, slip_and_place
 from reference_model.systems import FloatArray
 
-Parameters = float
-"""Address (see ``kept``) of a ``Contact``, ``Kinds`` and reference coordinates."""
+Parameters = FloatArray
+"""A ``Contact``, ``Kinds`` and reference coordinates in one table."""
 
 KINDS_AT, REFERENCE_AT = CONTACT_SIZE, CONTACT_SIZE + 3
 
@@ -28,28 +27,23 @@ def parameters_of(contact: Contact, kinds: Kinds, reference: FloatArray) -> Para
 
     The contact contains 1 N if the friction force is not constant.
     """
-    return kept((*contact, *kinds, *reference.tolist()))
+    return np.array([*contact, *kinds, *reference])
 
 
 @compiled
-def contact_of(at: Parameters) -> tuple[Contact, Kinds]:
+def contact_of(table: Parameters) -> tuple[Contact, Kinds]:
     """Return contact and kinds from the table of ``parameters_of``."""
-    radius, points, friction = number_at(at, 0), int(number_at(at, 1)), number_at(at, 2)
-    contact = radius, points, friction, number_at(at, 3), int(number_at(at, 4)), number_at(at, 5)
-    return contact, (
-        int(number_at(at, KINDS_AT)),
-        int(number_at(at, KINDS_AT + 1)),
-        number_at(at, KINDS_AT + 2),
-    )
+    contact = table[0], int(table[1]), table[2], table[3], int(table[4]), table[5]
+    return contact, (int(table[KINDS_AT]), int(table[KINDS_AT + 1]), table[KINDS_AT + 2])
 
 
 @compiled
-def motion_of(at: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, FloatArray]:
+def motion_of(table: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, FloatArray]:
     """Return coordinates with reference values, and velocities, in the memory of the lists ``q`` and ``q_t``."""
-    size = SIZES[int(number_at(at, KINDS_AT))] + SIZES[int(number_at(at, KINDS_AT + 1))]
+    size = SIZES[int(table[KINDS_AT])] + SIZES[int(table[KINDS_AT + 1])]
     coordinates, velocities = as_arrays(q, q_t, size)
     for i in range(size):
-        coordinates[i] += number_at(at, REFERENCE_AT + i)
+        coordinates[i] += table[REFERENCE_AT + i]
     return coordinates, velocities
 
 

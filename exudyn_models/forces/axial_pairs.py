@@ -159,7 +159,7 @@ class RowLaw:
 
     @property
     def parts(self) -> Sequence[RowLaw]:
-        """Laws with locks of their own: this law, or the laws of several points."""
+        """Laws that lock: this law, or a law for each point."""
         return (self,)
 
     @property

@@ -54,6 +54,9 @@ class FloatsType(types.Type):
 
 FLOATS = FloatsType()
 
+TABLE: Any = _types.float64[::1]
+"""A contiguous array of floats."""
+
 
 @extending.register_model(FloatsType)
 class _FloatsModel(extending.models.StructModel):  # type: ignore[misc]

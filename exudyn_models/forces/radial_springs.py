@@ -13,8 +13,7 @@ from typing import Any, cast
 import numpy as np
 
 from exudyn_models.forces.any_pair import Parameters
-from exudyn_models.forces.jit import FLOATS, KeptOnDisk, as_arrays, compiled, entry_point
-from exudyn_models.forces.laws.tables import kept, number_at
+from exudyn_models.forces.jit import FLOATS, TABLE, KeptOnDisk, as_arrays, compiled, entry_point
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
     NO_MOUNTS,
@@ -54,8 +53,8 @@ def support_functions(
 
 def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
     xb, yb, angle, x, y, *_ = reference.tolist()
-    parameters = kept((hidden, len(reference) - hidden, *law, *offset, x - xb, y - yb, angle))
-    return partial(entry_point(force_in_the_plane, float, None, None, None, FLOATS, FLOATS), parameters)
+    table = np.array([hidden, len(reference) - hidden, *law, *offset, x - xb, y - yb, angle])
+    return partial(entry_point(force_in_the_plane, TABLE, None, None, None, FLOATS, FLOATS), table)
 
 
 def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
@@ -116,13 +115,13 @@ def elastic_energy(square: float, law: Law) -> float:
 
 
 @compiled
-def force_in_the_plane(at: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
+def force_in_the_plane(table: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
     """Return the forces on both nodes, in the memory of ``q_t``, for a base that only turns about the z-axis.
 
-    ``at`` is the address of the numbers of hidden and of other coordinates, a ``Law``, an ``Offset``, and
+    ``table`` contains the numbers of hidden and of other coordinates, a ``Law``, an ``Offset``, and
     reference values of the disc's relative position and the base's angle.
     """
-    disc, size = SIZES[PLANAR] - int(number_at(at, 0)), int(number_at(at, 1))
+    disc, size = SIZES[PLANAR] - int(table[0]), int(table[1])
     positions, velocities = as_arrays(q, q_t, size)
     x, y, vx, vy = positions[disc], positions[disc + 1], velocities[disc], velocities[disc + 1]
     angle = spin = 0.0
@@ -130,9 +129,9 @@ def force_in_the_plane(at: Parameters, mbs: Any, t: float, item: int, q: Any, q_
         angle, spin = positions[disc - 1], velocities[disc - 1]
     if disc > 1:
         x, y, vx, vy = x - positions[0], y - positions[1], vx - velocities[0], vy - velocities[1]
-    law = number_at(at, 2), number_at(at, 3), number_at(at, 4), number_at(at, 5), number_at(at, 6)
-    offset_x, offset_y, angle = number_at(at, 7), number_at(at, 8), number_at(at, 11) + angle
-    x, y, cosine, sine = number_at(at, 9) + x, number_at(at, 10) + y, math.cos(angle), math.sin(angle)
+    law = table[2], table[3], table[4], table[5], table[6]
+    offset_x, offset_y, angle = table[7], table[8], table[11] + angle
+    x, y, cosine, sine = table[9] + x, table[10] + y, math.cos(angle), math.sin(angle)
     wx, wy = x - cosine * offset_x + sine * offset_y, y - sine * offset_x - cosine * offset_y
     secant, damping = secant_stiffness(wx * wx + wy * wy, law), law[4]
     fx, fy = -secant * wx - damping * (vx + spin * y), -secant * wy - damping * (vy - spin * x)

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 from exudyn_models.forces.any_pair import force_on_any, jacobian_on_any, parameters_of, slip_on_any
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
-from exudyn_models.forces.jit import FLOATS, entry_point
+from exudyn_models.forces.jit import FLOATS, TABLE, entry_point
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import IN_THE_PLANE, force_in_the_plane, jacobian_in_the_plane
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
@@ -29,7 +29,7 @@ def force_and_jacobian(
     in_plane = kinds in IN_THE_PLANE
     parameters = parameters_of(factors.contact or factors.geometry, kinds, reference)
     force = entry_point(force_in_the_plane if in_plane else force_on_any, *FORCE)
-    slip = entry_point(slip_on_any, float, FLOATS, FLOATS) if factors.depends_on_motion else None
+    slip = entry_point(slip_on_any, TABLE, FLOATS, FLOATS) if factors.depends_on_motion else None
 
     def motion(t: float, q: Floats, q_t: Floats) -> Motion:
         return (t, *slip(parameters, q, q_t)) if slip else (t, math.nan, math.nan, math.nan)
@@ -42,7 +42,7 @@ def force_and_jacobian(
     def derive() -> Callable[..., Any]:
         if in_plane and slip is None:
             return entry_point(jacobian_in_the_plane, *FORCE, float, float)
-        return entry_point(jacobian_on_any, *[float] * 4, *FORCE[1:], float, float)
+        return entry_point(jacobian_on_any, TABLE, *[float] * 3, *FORCE[1:], float, float)
 
     def jacobian(mbs: Any, t: float, item: int, q: Floats, q_t: Floats, *weights: float) -> FloatArray:
         known = motion(t, q, q_t)
@@ -56,4 +56,4 @@ def force_and_jacobian(
 Motion = tuple[float, float, float, float]
 """Time (s), radius (m), slip speed (m/s) and relative spin (rad/s)."""
 
-FORCE = float, float, None, None, None, FLOATS, FLOATS
+FORCE = TABLE, float, None, None, None, FLOATS, FLOATS

@@ -23,7 +23,7 @@ from exudyn_models.solver.rows.laws import MeshLaw
 from reference_model.systems import FloatArray, require_choice, shown
 
 FREEDOMS = ("1D", "Point2D", "Point", "RigidBody2D", "RigidBodyRotVecLG", "RigidBodyRxyz", "RigidBodyEP")
-"""Kinds of nodes, by Exudyn's names, whose first three coordinates at most are freedoms of their own."""
+"""Kinds of nodes, by Exudyn's names. Up to three of their first coordinates can be freedoms."""
 
 Quantity = Literal["moment", "friction", "twist", "relative_spin", "mode", "power", "heat"]
 

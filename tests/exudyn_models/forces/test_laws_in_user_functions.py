@@ -12,6 +12,7 @@ import pytest
 from pairs_of_bodies import bodies_of
 
 from exudyn_models import add_ring_friction
+from exudyn_models.forces.laws.tables import kept
 
 RING = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": 2.0, "regularisation": 1e-3}
 PAIRS = [*product((None, "rotor"), ("rotor", "planar")), ("planar", "planar"), ("planar", "Tait-Bryan")]
@@ -139,3 +140,11 @@ def test_a_second_process_compiles_nothing_that_takes_long(monkeypatch):
         "share_of_ring",
         "impl",
     }  # 0.1 s each
+
+
+def test_a_contact_that_changes_often_keeps_no_memory():
+    _, friction = added(("planar", "planar"))
+    before = kept.cache_info().currsize
+    for load in range(50):
+        friction.change(normal_load=1.0 + load)
+    assert kept.cache_info().currsize == before
