@@ -10,8 +10,8 @@ from reference_model.core.steps.explicit import SIZE, Unknowns, component, insid
 from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
-AS_GOOD = 1.0
-"""Largest error of the interpolant, in tolerances of a step: as small as at the ends of steps."""
+MARGIN, MOST_PIECES = 1.2, 32.0
+"""Safety factor of the number of pieces of a step, and its largest value."""
 
 NEAR = 1e-8
 """Last correction in Newton's method, before the next one is rounding error."""
@@ -22,15 +22,15 @@ Creep = tuple[float, float, float, float]
 
 
 @part
-def is_accurate(h: float, F: FloatArray, tolerance: float, law: Law) -> bool:
-    """Return whether the defect of the interpolant in the middle of a step, over half of it, is small enough."""
+def defect(h: float, F: FloatArray, tolerance: float, law: Law) -> float:
+    """Return the defect of the interpolant in the middle of a step, over half of it, in tolerances."""
     y = inside(F, 0.5)
     found = rates(y[0], y[1], y[2], y[3], y[4], y[5], law)
     error = 0.0
     for v in range(SIZE):
         scale = tolerance * (1.0 + abs(y[v]) if v < 5 else 1.0)
         error = max(error, 0.5 * abs(component(F, 0.5, v)[1] - h * found[v]) / scale)
-    return error <= AS_GOOD
+    return error
 
 
 @part
@@ -38,13 +38,28 @@ def record(
     y: Unknowns, f: Unknowns, new: Unknowns, last: Unknowns, h: float, tolerance: float, memory: FloatArray,
     times: FloatArray, out: FloatArray, law: Law, K: FloatArray, F: FloatArray,
 ) -> None:  # fmt: skip
-    """Record times within an explicit step from ``y`` to ``new``, where the rates are ``f`` and ``last``."""
+    """Record times within an explicit step from ``y`` to ``new``, where the rates are ``f`` and ``last``.
+
+    Where the interpolant is less accurate than the step, shorter steps and their interpolants replace it.
+    """
     interpolate(y, new, last, h, law, K, F)
     memory[EVALUATIONS] += 4.0
-    if is_accurate(h, F, tolerance, law):
+    error = defect(h, F, tolerance, law)
+    if error <= 1.0:
         record_step(y, new, F, memory, times, out, law)
-    else:
-        record_by_steps(y, f, new, h, memory, times, out, law, K)
+        return
+    pieces = int(min(1.0 + MARGIN * error**0.125, MOST_PIECES))
+    for i in range(pieces):
+        there, then = take(y, f, h / pieces, law, K)[0], last
+        memory[EVALUATIONS] += 16.0
+        if i == pieces - 1:
+            there = new
+        else:
+            then = rates(there[0], there[1], there[2], there[3], there[4], there[5], law)
+        if pending(memory, times, there[6]):
+            interpolate(y, there, then, h / pieces, law, K, F)
+            record_step(y, there, F, memory, times, out, law)
+        y, f = there, then
 
 
 @part
@@ -68,33 +83,6 @@ def record_step(
             if abs(change) < NEAR:
                 break
         put(out[int(memory[RECORDED])], inside(F, place), law)
-        memory[RECORDED] += 1.0
-
-
-@part
-def record_by_steps(
-    y: Unknowns, first: Unknowns, new: Unknowns, h: float, memory: FloatArray, times: FloatArray, out: FloatArray,
-    law: Law, K: FloatArray,
-) -> None:  # fmt: skip
-    """Record times within an explicit step by shorter steps from its start."""
-    while pending(memory, times, new[6]):
-        t = times[int(memory[RECORDED])]
-        tau = h * (t - y[6]) / (new[6] - y[6])
-        there, f = y, first
-        for _ in range(MOST_CORRECTIONS):
-            there = take(y, first, tau, law, K)[0]
-            memory[EVALUATIONS] += 12.0
-            f = rates(there[0], there[1], there[2], there[3], there[4], there[5], law)
-            late = (t - there[6]) / f[6]
-            if abs(late) < NEAR * h:
-                break
-            tau = min(max(tau + late, 0.0), h)
-        late = (t - there[6]) / f[6]
-        there = (
-            there[0] + late * f[0], there[1] + late * f[1], there[2] + late * f[2], there[3] + late * f[3],
-            there[4] + late * f[4], there[5] + late * f[5], t,
-        )  # fmt: skip
-        put(out[int(memory[RECORDED])], there, law)
         memory[RECORDED] += 1.0
 
 

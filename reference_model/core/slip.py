@@ -89,7 +89,8 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
         if law.point != CENTRE:
             pace += abs(y[4]) / law.gyration
         together = len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST
-        ends = together or left * math.sqrt(across) / fall + left * left * pace < REST_TIME
+        # The fall is stationary where slip is aligned with it, so what turns meanwhile counts squared.
+        ends = together or left * across / (fall * fall) + left * left * pace < REST_TIME
     if ends:
         return left
     return 0.0 if s < reversal and max(s, fall) < 10.0 * NOISE * law.friction else -1.0

@@ -27,13 +27,13 @@ from reference_model.core.memory import (
 from reference_model.core.recording import record_series
 from reference_model.core.rest import begun, drift
 from reference_model.core.slip import creep_from, point_for
-from reference_model.core.steps.collocation import NODES, POINTS, at, error_of, series, solve
+from reference_model.core.steps.collocation import NODES, SHARES, at, error_of, series, solve
 from reference_model.core.steps.explicit import Unknowns
 from reference_model.core.surfaces import crossed_any
 from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
-FIRST_SPAN, LEAST_SPAN = 0.01, 1e-12
+FIRST_SPAN, LEAST_SPAN = 0.03, 1e-12
 """First step from rest, which shrinks until the motion is resolved, and smallest step."""
 
 BRIEF = 1e-5
@@ -75,24 +75,9 @@ def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
     """Return the extrapolation of a step of length ``before`` to the nodes of the next step, shape (NODES, 6)."""
     guess = np.empty((NODES, 6))
     for i in range(NODES):
-        there = at(coefficients, 1.0 + 0.5 * h * (POINTS[i] + 1.0) / before)
+        there = at(coefficients, 1.0 + h * SHARES[i] / before)
         for v in range(6):
             guess[i, v] = there[v]
-    return guess
-
-
-@part
-def onward(y: Unknowns, h: float, law: Law) -> FloatArray:
-    """Return the unknowns at the nodes of a step of length ``h`` if the slip stays the same, shape (NODES, 6)."""
-    guess = np.empty((NODES, 6))
-    ux, uy = centre_slip(y[2], y[3], y[4], y[5], law)
-    for i in range(NODES):
-        place = 0.5 * h * (POINTS[i] + 1.0)
-        for v in range(2, 5):
-            guess[i, v] = y[v]
-        guess[i, 0] = y[0] + place * (ux - law.omega * y[1])
-        guess[i, 1] = y[1] + place * (uy + law.omega * y[0])
-        guess[i, 5] = y[5] + place * (law.omega + y[4] / law.gyration)
     return guess
 
 
@@ -116,13 +101,13 @@ def slip_stiffly(
             break
         start = six(y)
         h = min(h, end - y[6])
-        guess = ahead(coefficients, h, before) if known else onward(y, h, law)
+        guess = ahead(coefficients, h, before) if known else np.full((NODES, 1), 1.0) * start
         memory[WORK] += WORK_OF_STEP
         memory[EVALUATIONS] += 40.0
         solved, values = solve(start, h, guess, law)
         error, found = math.inf, coefficients
         if solved:
-            found = series(start, h, values, law)
+            found = series(start, values)
             error = error_of(found, tolerance, law)
         if not error <= 1.0:
             h *= max(0.1, 0.8 * error**-0.125) if solved else 0.3
@@ -167,7 +152,7 @@ def begin_slip(
         return slip_briefly(y, n, first, gain, memory, end, times, out, law)
     if law.sense != 0.0:
         return y
-    x_drift, y_drift, r_drift, turn = drift(y, law)
+    growing = drift(y, law)[2]
     h, start = FIRST_SPAN, six(y)
     known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
     for _ in range(MOST_STEPS):
@@ -178,20 +163,17 @@ def begin_slip(
         else:
             guess = np.empty((NODES, 6))
             for i in range(NODES):
-                place = 0.5 * h * (POINTS[i] + 1.0)
+                place = h * SHARES[i]
                 s = (first + 0.5 * gain * place) * place
-                guess[i, 0] = start[0] + place * x_drift
-                guess[i, 1] = start[1] + place * y_drift
-                guess[i, 5] = start[5] + place * turn
                 guess[i, 2] = s * (n[0] + place * tx)
                 guess[i, 3] = s * (n[1] + place * ty)
-                guess[i, 4] = s * (n[2] + place * tr) if law.point == CENTRE else start[4] + place * r_drift
+                guess[i, 4] = s * (n[2] + place * tr) if law.point == CENTRE else start[4] + place * growing
         memory[WORK] += WORK_OF_STEP
         memory[EVALUATIONS] += 40.0
         solved, values = solve(start, h, guess, law)
         error, found = math.inf, coefficients
         if solved:
-            found = series(start, h, values, law)
+            found = series(start, values)
             error = error_of(found, 0.1 * tolerance, law)
         if not error <= 1.0:
             h *= max(0.25, 0.8 * error**-0.125) if solved else 0.25

@@ -12,14 +12,17 @@ from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
 from reference_model.core.forces.law import CENTRE, Law
-from reference_model.core.forces.points import turning_of_friction
+from reference_model.core.forces.points import centre_slip, turning_of_friction
 from reference_model.core.forces.rates import friction, growth, secant, tangent
-from reference_model.numerics.parts import part
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 NODES = 8
 POINTS = np.append(roots_jacobi(NODES - 1, 1.0, 0.0)[0], 1.0)
 """Radau nodes in [−1, 1], the last at 1."""
+
+SHARES = 0.5 * (POINTS + 1.0)
+"""Radau nodes in [0, 1]."""
 
 TO_SERIES = np.linalg.inv(legendre.legvander(POINTS, NODES - 1))
 """Matrix from values at the nodes to Legendre coefficients."""
@@ -50,26 +53,27 @@ ROUNDING = 1e-14
 
 
 @part
-def rates_at(values: FloatArray, law: Law) -> FloatArray:
-    """Return the rates of x, y, the slip, r and the angle in time at the nodes, shape (NODES, 6)."""
-    result = np.empty((NODES, 6))
+def put_places(values: FloatArray, start: FloatArray, h: float, law: Law) -> None:
+    """Replace the positions and angles at the nodes by the integrals of the slip there.
+
+    In the frame of the master disc, the velocity of the centre is its slip.
+    """
+    carried = np.empty((NODES, 2))
     for i in range(NODES):
-        x, y, vx, vy, r, angle = (
-            values[i, 0],
-            values[i, 1],
-            values[i, 2],
-            values[i, 3],
-            values[i, 4],
-            values[i, 5],
-        )
-        ax, ay, ar, _, ux, uy = growth(x, y, vx, vy, r, angle, law)
-        result[i, 0] = ux - law.omega * y
-        result[i, 1] = uy + law.omega * x
-        result[i, 2] = ax
-        result[i, 3] = ay
-        result[i, 4] = ar
-        result[i, 5] = law.omega + r / law.gyration
-    return result
+        turned = 0.0
+        for j in range(NODES):
+            turned += INTEGRAL[i, j] * values[j, 4]
+        angle = start[5] + h * (law.omega * SHARES[i] + turned / law.gyration)
+        ux, uy = centre_slip(values[i, 2], values[i, 3], values[i, 4], angle, law)
+        c, s = math.cos(law.omega * h * SHARES[i]), math.sin(law.omega * h * SHARES[i])
+        carried[i, 0], carried[i, 1], values[i, 5] = c * ux + s * uy, c * uy - s * ux, angle
+    for i in range(NODES):
+        x, y = start[0], start[1]
+        for j in range(NODES):
+            x += h * INTEGRAL[i, j] * carried[j, 0]
+            y += h * INTEGRAL[i, j] * carried[j, 1]
+        c, s = math.cos(law.omega * h * SHARES[i]), math.sin(law.omega * h * SHARES[i])
+        values[i, 0], values[i, 1] = c * x - s * y, s * x + c * y
 
 
 @part
@@ -104,77 +108,106 @@ def friction_derivatives(vx: float, vy: float, r: float, angle: float, law: Law)
     return result
 
 
+@inlined
+def arm(angle: float, law: Law) -> tuple[float, float]:
+    """Return the arm of the point that ``law`` follows, relative to the centre."""
+    c, s = math.cos(angle), math.sin(angle)
+    return c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+
+
 @part
 def jacobian_at(values: FloatArray, law: Law) -> FloatArray:
-    """Return the derivatives of the rates at a node, shape (6, 6)."""
+    """Return the derivatives of the growth of slip and of r at a node by all unknowns, shape (3, 6)."""
     x, y, vx, vy, r, angle = values[0], values[1], values[2], values[3], values[4], values[5]
-    J = np.zeros((6, 6))
+    J = np.zeros((3, 6))
     omega, damping = law.omega, law.damping
     wx = x - law.offset
     d = math.sqrt(wx * wx + y * y)
     k = secant(d, law)
     more = (tangent(d, law) - k) / (d * d) if d > 0.0 else 0.0
     # Acceleration of the centre, by x, y and its slip
-    J[2, 0] = -k - more * wx * wx + omega * omega
-    J[2, 1] = -more * wx * y + damping * omega
-    J[3, 0] = -more * wx * y - damping * omega
-    J[3, 1] = -k - more * y * y + omega * omega
-    J[0, 1], J[1, 0], J[0, 2], J[1, 3], J[5, 4] = -omega, omega, 1.0, 1.0, 1.0 / law.gyration
-    J[2, 2] = J[3, 3] = -damping
-    J[2, 3], J[3, 2] = omega, -omega
-    J[4, 4] = -law.shaft
-    bent = friction_derivatives(vx, vy, r, angle, law)
-    c, s = math.cos(angle), math.sin(angle)
-    ex, ey = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    J[0, 0] = -k - more * wx * wx + omega * omega
+    J[0, 1] = -more * wx * y + damping * omega
+    J[1, 0] = -more * wx * y - damping * omega
+    J[1, 1] = -k - more * y * y + omega * omega
+    J[0, 2] = J[1, 3] = -damping
+    J[0, 3], J[1, 2] = omega, -omega
+    J[2, 4] = -law.shaft
+    ex, ey = arm(angle, law)
     if law.point != CENTRE:
         # The slip of the centre is v − i·r·η.
-        for i in range(4):
+        for i in range(2):
             by_x, by_y = J[i, 2], J[i, 3]
             J[i, 4] = by_x * ey - by_y * ex
             J[i, 5] = r * (by_x * ex + by_y * ey)
+    bent = friction_derivatives(vx, vy, r, angle, law)
     for i in range(3):
         for j in range(4):
-            J[2 + i, 2 + j] += bent[i, j]
+            J[i, 2 + j] += bent[i, j]
     if law.point != CENTRE:
         ar, turn = growth(x, y, vx, vy, r, angle, law)[2], r * (omega + r / law.gyration)
         for j in range(6):
-            J[2, j] -= ey * J[4, j]
-            J[3, j] += ex * J[4, j]
+            J[0, j] -= ey * J[2, j]
+            J[1, j] += ex * J[2, j]
         more = omega + 2.0 * r / law.gyration
-        J[2, 4] -= more * ex
-        J[3, 4] -= more * ey
-        J[2, 5] += turn * ey - ar * ex
-        J[3, 5] -= turn * ex + ar * ey
+        J[0, 4] -= more * ex
+        J[1, 4] -= more * ey
+        J[0, 5] += turn * ey - ar * ex
+        J[1, 5] -= turn * ex + ar * ey
     return J
 
 
 @part
 def residual_of(values: FloatArray, start: FloatArray, h: float, n: int, law: Law) -> FloatArray:
-    """Return the residuals of the first ``n`` unknowns at the nodes, shape (NODES·n,)."""
-    rates = rates_at(values, law)
+    """Return the residuals of the ``n`` components of slip at the nodes, shape (NODES·n,)."""
+    grown = np.empty((NODES, 3))
+    for j in range(NODES):
+        x, y, vx, vy, r = values[j, 0], values[j, 1], values[j, 2], values[j, 3], values[j, 4]
+        ax, ay, ar, _, _, _ = growth(x, y, vx, vy, r, values[j, 5], law)
+        grown[j, 0], grown[j, 1], grown[j, 2] = ax, ay, ar
     result = np.empty(NODES * n)
     for i in range(NODES):
         for v in range(n):
             total = 0.0
             for j in range(NODES):
-                total += INTEGRAL[i, j] * rates[j, v]
-            result[n * i + v] = values[i, v] - start[v] - h * total
+                total += INTEGRAL[i, j] * grown[j, v]
+            result[n * i + v] = values[i, 2 + v] - start[2 + v] - h * total
     return result
 
 
 @part
 def newton_matrix(values: FloatArray, h: float, n: int, law: Law) -> FloatArray:
-    """Return the derivatives of :func:`residual_of`, shape (NODES·n, NODES·n)."""
-    matrix = np.zeros((NODES * n, NODES * n))
+    """Return the derivatives of :func:`residual_of` by the slip at the nodes, shape (NODES·n, NODES·n).
+
+    The change of a point's arm with the angle, of the order of h³, is neglected.
+    """
+    by_slip, rows = np.empty((NODES, NODES * n * n)), np.zeros((NODES, NODES * n * n))
     for j in range(NODES):
         J = jacobian_at(values[j], law)
-        for i in range(NODES):
-            factor = -h * INTEGRAL[i, j]
+        for k in range(NODES):
+            weight, turn = h * INTEGRAL[j, k], law.omega * h * (SHARES[j] - SHARES[k])
+            c, s = weight * math.cos(turn), weight * math.sin(turn)
+            ex, ey = arm(values[k, 5], law)
             for v in range(n):
+                row = (n * k + v) * n
+                x, y = c * J[v, 0] + s * J[v, 1], c * J[v, 1] - s * J[v, 0]
+                by_slip[j, row], by_slip[j, row + 1] = x, y
+                if n > 2:
+                    by_slip[j, row + 2] = x * ey - y * ex + weight / law.gyration * J[v, 5]
+                if j == k:
+                    for w in range(n):
+                        by_slip[j, row + w] += J[v, 2 + w]
+    matrix = np.empty((NODES * n, NODES * n))
+    for i in range(NODES):
+        for j in range(NODES):
+            rows[i] -= h * INTEGRAL[i, j] * by_slip[j]
+        for k in range(NODES):
+            for v in range(n):
+                row = (n * k + v) * n
                 for w in range(n):
-                    matrix[n * i + v, n * j + w] = factor * J[v, w]
-        for v in range(n):
-            matrix[n * j + v, n * j + v] += 1.0
+                    matrix[n * i + v, n * k + w] = rows[i, row + w]
+    for i in range(NODES * n):
+        matrix[i, i] += 1.0
     return matrix
 
 
@@ -213,10 +246,14 @@ def solve_linear(matrix: FloatArray, right: FloatArray) -> None:
 
 @part
 def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[bool, FloatArray]:
-    """Return whether Newton's method converged, and the unknowns at the nodes, shape (NODES, 6)."""
+    """Return whether Newton's method converged, and the unknowns at the nodes, shape (NODES, 6).
+
+    It needs a ``guess`` of the slip and r, in columns 2 to 4.
+    """
     values, last = guess.copy(), math.inf
-    n = 6 if len(law.around) > 0 else (5 if law.outer > 0.0 else 4)
-    slip = min(n, 5) if law.point == CENTRE else 4
+    n = 3 if len(law.around) > 0 or law.outer > 0.0 else 2
+    slip = n if law.point == CENTRE else 2
+    put_places(values, start, h, law)
     for _ in range(MOST_ITERATIONS):
         residual = residual_of(values, start, h, n, law)
         matrix = newton_matrix(values, h, n, law)
@@ -234,18 +271,19 @@ def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[boo
         largest = 0.0
         for i in range(NODES):
             s = moved = 0.0
-            for v in range(2, slip):
-                s += values[i, v] ** 2
+            for v in range(slip):
+                s += values[i, 2 + v] ** 2
                 moved += change[n * i + v] ** 2
             s, moved = math.sqrt(s), math.sqrt(moved)
             if not moved < math.inf:
                 return False, values
             shrunk = min(1.0, 0.7 * s / moved) if moved > 0.0 else 1.0
             for v in range(n):
-                values[i, v] -= (shrunk if 2 <= v < slip else 1.0) * change[n * i + v]
-                if not 2 <= v < slip:
+                values[i, 2 + v] -= (shrunk if v < slip else 1.0) * change[n * i + v]
+                if v >= slip:
                     largest = max(largest, abs(change[n * i + v]) / NEAR)
             largest = max(largest, moved / (CONVERGED * s + 1e-15 * h))
+        put_places(values, start, h, law)
         if largest < 1.0 or (largest < NOISE and largest > 0.5 * last):
             return True, values
         last = largest
@@ -253,19 +291,13 @@ def solve(start: FloatArray, h: float, guess: FloatArray, law: Law) -> tuple[boo
 
 
 @part
-def series(start: FloatArray, h: float, values: FloatArray, law: Law) -> FloatArray:
-    """Return Legendre coefficients of the unknowns over the step, shape (NODES + 1, 6)."""
+def series(start: FloatArray, values: FloatArray) -> FloatArray:
+    """Return Legendre coefficients of the unknowns over a step, shape (NODES + 1, 6)."""
     samples = np.empty((NODES + 1, 6))
     for v in range(6):
         samples[0, v] = start[v]
         for i in range(NODES):
             samples[1 + i, v] = values[i, v]
-    if len(law.around) == 0:  # the angle follows from r
-        for i in range(NODES):
-            turned = 0.0
-            for j in range(NODES):
-                turned += INTEGRAL[i, j] * (law.omega + values[j, 4] / law.gyration)
-            samples[1 + i, 5] = start[5] + h * turned
     result = np.zeros((NODES + 1, 6))
     for i in range(NODES + 1):
         for j in range(NODES + 1):

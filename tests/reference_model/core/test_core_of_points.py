@@ -11,11 +11,11 @@ from reference_model import DiscOnDisc, Points, simulate
 from reference_model.contact.contact_law import contact_of
 from reference_model.contact.limit_surface import PointsLimit
 from reference_model.core.forces.law import seen_from
-from reference_model.core.forces.rates import growth
+from reference_model.core.forces.rates import growth, rates
 from reference_model.core.limit import LEAST_SLIP, direction_of_points, pivot_from_rest, spare_of_points
 from reference_model.core.memory import seen
 from reference_model.core.single import law_of
-from reference_model.core.steps.collocation import jacobian_at, rates_at
+from reference_model.core.steps.collocation import jacobian_at
 from reference_model.core.units import Units
 
 SEEDS = (*range(2, 50, 6), 188, 302)
@@ -70,15 +70,13 @@ def test_rates_and_their_derivatives_do_not_depend_on_the_point_whose_slip_is_an
     values = np.array(seen(y, centre, law)[:6])
     J, h = jacobian_at(values, law), 1e-6
     for k in range(6):
-        ahead, behind = (
-            rates_at(np.tile(values + sign * h * np.eye(6)[k], (8, 1)), law)[0] for sign in (1, -1)
-        )
+        ahead, behind = (np.array(growth(*(values + sign * h * np.eye(6)[k]), law)[:3]) for sign in (1, -1))
         assert J[:, k] == pytest.approx((ahead - behind) / (2.0 * h), abs=1e-8)
     # The point moves as part of the disc.
-    rates = rates_at(np.tile(y[:6], (8, 1)), centre)[0]
-    moved = tuple(a + h * b for a, b in zip(y, [*rates, 0.0], strict=True))
+    pace = rates(*y[:6], centre)[6]
+    moved = tuple(a + h / pace * b for a, b in zip(y, rates(*y[:6], centre), strict=True))
     slip = (np.array(seen(moved, centre, law)[2:4]) - values[2:4]) / h
-    assert rates_at(np.tile(values, (8, 1)), law)[0, 2:4] == pytest.approx(slip, abs=1e-5)
+    assert growth(*values, law)[:2] == pytest.approx(slip, abs=1e-5)
 
 
 def test_friction_holds_up_to_the_limit_surface():
