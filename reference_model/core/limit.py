@@ -12,8 +12,7 @@ import numpy as np
 
 from reference_model.core.forces.law import CENTRE, WIDTH, Law, seen_from
 from reference_model.core.forces.pivot import turning
-from reference_model.core.forces.points import turning_of_friction
-from reference_model.core.forces.rates import growth, pull
+from reference_model.core.forces.rates import pull
 from reference_model.core.steps.collocation import solve_linear
 from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
@@ -28,6 +27,9 @@ ARMIJO = 1e-4
 
 ROUNDING = 4e-16
 """Rounding error of a mean of unit vectors."""
+
+SMOOTH, NARROWER, STAGES = 0.5, 0.01, 4
+"""First width of the smoothed kinks as a share of the growth, ratio of successive widths, and their number."""
 
 LEAST_SLIP = 1e-100
 """Negligible slip speed that still gives friction a direction."""
@@ -153,53 +155,75 @@ def pivot_from_rest(x: float, y: float, angle: float, law: Law) -> tuple[int, fl
 
 @part
 def direction_of_points(x: float, y: float, angle: float, law: Law) -> tuple[float, float, float]:
-    """Return the unit vector of the slip that begins at rest: the direction n of fastest growth W·n.
+    """Return the unit vector of the slip that begins at rest: the direction n where F·n − P(n) is largest.
 
-    W is the growth of slip along n. W·n is a quasi-concave function where it is positive, so Newton's method on the
-    sphere starts from a direction of positive growth: the direction of h, or of a force that is too large.
+    A search stalls where a point hardly slips, because P has a kink there. So P is smoothed, less and less, by a
+    share of F·n − P(n), which therefore stays positive and quasi-concave.
     """
-    fx, fy, _, sense = wrench(x, y, angle, law)
-    c, s = math.cos(angle), math.sin(angle)
-    strength = math.sqrt(fx * fx + fy * fy)
-    if strength < 1.0:
+    fx, fy, moment, sense = wrench(x, y, angle, law)
+    n = np.array((fx, fy, 0.0))
+    if math.sqrt(fx * fx + fy * fy) < 1.0:
         _, ux, uy = largest_moment(sense * fx, sense * fy, law)
-        w = sense
-        ux, uy = sense * (c * ux - s * uy), sense * (s * ux + c * uy)
-    else:
-        ux, uy, w = (c * fx - s * fy) / strength, (s * fx + c * fy) / strength, 0.0
-    size = math.sqrt(ux * ux + uy * uy + w * w)
-    n = np.array((ux / size, uy / size, w / size))
-    grown = grows(x, y, angle, n, law)
+        n = np.array((sense * ux, sense * uy, sense))
+    n = n / math.sqrt(np.dot(n, n))
+    force = np.array((fx, fy, moment))
+    width = SMOOTH * max(grown_along(n, force, 0.0, law)[0], 0.0)
+    for _ in range(STAGES):
+        n = fastest(n, force, width, law)
+        width *= NARROWER
+    n = fastest(n, force, 0.0, law)
+    c, s = math.cos(angle), math.sin(angle)
+    return float(c * n[0] - s * n[1]), float(s * n[0] + c * n[1]), float(n[2])
+
+
+@part
+def fastest(n: FloatArray, force: FloatArray, width: float, law: Law) -> FloatArray:
+    """Return the maximum of F·n − P(n) on the unit sphere, by Newton's method from ``n``."""
+    along, slope, bent = grown_along(n, force, width, law)
     for _ in range(60):
-        along = float(np.dot(grown, n))
-        slope = grown - along * n
-        if math.sqrt(np.dot(slope, slope)) < 1e-15 * law.friction:
+        slope = slope - np.dot(slope, n) * n
+        if math.sqrt(np.dot(slope, slope)) < 1e-15:
             break
-        bent = turning_of_friction(n[0], n[1], n[2], angle, law)
-        matrix = np.zeros((3, 3))
         for i in range(3):
             for k in range(3):
-                matrix[i, k] = law.friction * n[i] * n[k] - bent[i, k]
-            matrix[i, i] += max(along, 0.0) + 1e-14 * law.friction
+                bent[i, k] += n[i] * n[k]
+            bent[i, i] += max(along, 0.0) + 1e-14
         step = slope.copy()
-        solve_linear(matrix, step)
+        solve_linear(bent, step)
         gain, share, better = float(np.dot(slope, step)), 1.0, False
         while share > 1e-6 and not better:
             new = n + share * step
             new = new / math.sqrt(np.dot(new, new))
-            after = grows(x, y, angle, new, law)
-            better = float(np.dot(after, new)) > along + ARMIJO * share * gain
+            after, steeper, more = grown_along(new, force, width, law)
+            better = after > along + ARMIJO * share * gain
             share *= 0.5
         if not better:
             break
-        n, grown = new, after
+        n, along, slope, bent = new, after, steeper, more
         if 2.0 * share * math.sqrt(np.dot(step, step)) < 1e-14:
             break
-    return float(n[0]), float(n[1]), float(n[2])
+    return n
 
 
 @part
-def grows(x: float, y: float, angle: float, n: FloatArray, law: Law) -> FloatArray:
-    """Return the growth of slip in the direction ``n``, shape (3,)."""
-    a = growth(x, y, LEAST_SLIP * n[0], LEAST_SLIP * n[1], LEAST_SLIP * n[2], angle, law)
-    return np.array((a[0], a[1], a[2]))
+def grown_along(
+    n: FloatArray, force: FloatArray, width: float, law: Law
+) -> tuple[float, FloatArray, FloatArray]:
+    """Return F·n − P(n) in the frame of the disc, its gradient, and the second derivatives of P, shape (3, 3).
+
+    The speed of each point is √(v² + width²) on the unit sphere.
+    """
+    slope, bent, by = force.copy(), np.zeros((3, 3)), np.zeros(3)
+    for j in range(0, len(law.around), WIDTH):
+        x, y, share = law.around[j], law.around[j + 1], law.around[j + 2]
+        across, up = (1.0, 0.0, -y), (0.0, 1.0, x)
+        vx, vy = n[0] - n[2] * y, n[1] + n[2] * x
+        inverse = 1.0 / max(math.sqrt(vx * vx + vy * vy + width * width), LEAST_SLIP)
+        for i in range(3):
+            by[i] = (across[i] * vx + up[i] * vy + width * width * n[i]) * inverse
+            slope[i] -= share * by[i]
+        for i in range(3):
+            for k in range(3):
+                own = across[i] * across[k] + up[i] * up[k] + (width * width if i == k else 0.0)
+                bent[i, k] += share * inverse * (own - by[i] * by[k])
+    return float(np.dot(slope, n)), slope, bent

@@ -6,12 +6,21 @@ from reference_model.core.forces.law import CENTRE, Law
 from reference_model.core.forces.rates import rates
 from reference_model.core.memory import EVALUATIONS, RECORDED, carried, pending, put
 from reference_model.core.steps.collocation import at
-from reference_model.core.steps.explicit import SIZE, Unknowns, component, inside, interpolate, take
+from reference_model.core.steps.explicit import (
+    SIZE,
+    Unknowns,
+    component,
+    error_of,
+    factor_of,
+    inside,
+    interpolate,
+    take,
+)
 from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 MARGIN, MOST_PIECES = 1.2, 32.0
-"""Safety factor of the number of pieces of a step, and its largest value."""
+"""Safety factor of the number of parts of a step, and its largest value."""
 
 NEAR = 1e-8
 """Last correction in Newton's method, before the next one is rounding error."""
@@ -40,7 +49,7 @@ def record(
 ) -> None:  # fmt: skip
     """Record times within an explicit step from ``y`` to ``new``, where the rates are ``f`` and ``last``.
 
-    Where the interpolant is less accurate than the step, shorter steps and their interpolants replace it.
+    If the interpolant is less accurate than the step, shorter steps and their interpolants replace it.
     """
     interpolate(y, new, last, h, law, K, F)
     memory[EVALUATIONS] += 4.0
@@ -48,18 +57,25 @@ def record(
     if error <= 1.0:
         record_step(y, new, F, memory, times, out, law)
         return
-    pieces = int(min(1.0 + MARGIN * error**0.125, MOST_PIECES))
-    for i in range(pieces):
-        there, then = take(y, f, h / pieces, law, K)[0], last
-        memory[EVALUATIONS] += 16.0
-        if i == pieces - 1:
-            there = new
-        else:
+    left, step = h, h / int(min(1.0 + MARGIN * error**0.125, MOST_PIECES))
+    while pending(memory, times, new[6]):
+        step = min(step, left)
+        there, third, fifth = take(y, f, step, law, K)
+        memory[EVALUATIONS] += 11.0
+        error = step * error_of(y, there, third, fifth, tolerance, law)
+        if not error <= 1.0 and step > h / MOST_PIECES:
+            step *= factor_of(error)
+            continue
+        then = last
+        if step < left:
             then = rates(there[0], there[1], there[2], there[3], there[4], there[5], law)
+        else:
+            there = new
         if pending(memory, times, there[6]):
-            interpolate(y, there, then, h / pieces, law, K, F)
+            interpolate(y, there, then, step, law, K, F)
+            memory[EVALUATIONS] += 4.0
             record_step(y, there, F, memory, times, out, law)
-        y, f = there, then
+        y, f, left = there, then, left - step
 
 
 @part

@@ -89,7 +89,7 @@ def time_left(y: Unknowns, f: Unknowns, law: Law) -> float:
         if law.point != CENTRE:
             pace += abs(y[4]) / law.gyration
         together = len(law.around) > 0 and law.point == CENTRE and s < COMMON_REST
-        # The fall is stationary where slip is aligned with it, so what turns meanwhile counts squared.
+        # The fall is stationary if slip is aligned with it, so the error is quadratic in the misalignment.
         ends = together or left * across / (fall * fall) + left * left * pace < REST_TIME
     if ends:
         return left
@@ -203,18 +203,18 @@ def slide(
             new, third, fifth = take(y, f, h, law, K)
             memory[WORK] += 1.0
             memory[EVALUATIONS] += 11.0
-            if event != NOWHERE:
-                break
             error = h * error_of(y, new, third, fifth, tolerance, law)
             if law.sense == 0.0 and along(new, y, law) < 0.0 and speed_of(y, law) < SLOW:
                 error = max(error, TURNED_BACK)
             if not error <= 1.0:
                 h *= factor_of(error)
-                most = 1.0
+                most, event = 1.0, NOWHERE
                 if h < LEAST_STEP:
                     memory[STATUS] = FAILS
                     return y
                 continue
+            if event != NOWHERE:
+                break
             usual = h * min(most, factor_of(error))
             place, event = first_event(y, new, h, end, memory, law, K, F)
             if event == NOWHERE:

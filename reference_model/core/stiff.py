@@ -29,7 +29,7 @@ from reference_model.core.rest import begun, drift
 from reference_model.core.slip import creep_from, point_for
 from reference_model.core.steps.collocation import NODES, SHARES, at, error_of, series, solve
 from reference_model.core.steps.explicit import Unknowns
-from reference_model.core.surfaces import crossed_any
+from reference_model.core.surfaces import crosses_any, sides
 from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
@@ -109,8 +109,9 @@ def slip_stiffly(
         if solved:
             found = series(start, values)
             error = error_of(found, tolerance, law)
-        if not error <= 1.0:
-            h *= max(0.1, 0.8 * error**-0.125) if solved else 0.3
+        kink = solved and crosses_any(values, memory, law)
+        if not error <= 1.0 or kink:
+            h *= max(0.1, 0.8 * error**-0.125) if solved and not kink else 0.3
             if h < explicit:
                 memory[PATIENCE] *= 2.0
                 return y
@@ -122,8 +123,6 @@ def slip_stiffly(
         record_series(y[6], h, until, coefficients, memory, times, out, law)
         y = (new[0], new[1], new[2], new[3], new[4], new[5], until)
         s = speed_of(y, law)
-        if crossed_any(y, memory, law):
-            return y
         a = growth(y[0], y[1], y[2], y[3], y[4], y[5], law)
         fall = -along((0.0, 0.0, a[0], a[1], a[2], 0.0, 0.0), y, law) / s
         h *= min(2.0, 0.8 * max(error, 1e-16) ** -0.125)
@@ -153,6 +152,7 @@ def begin_slip(
     if law.sense != 0.0:
         return y
     growing = drift(y, law)[2]
+    sides((y[0], y[1], n[0], n[1], n[2] if law.point == CENTRE else y[4], y[5], y[6]), memory, law)
     h, start = FIRST_SPAN, six(y)
     known, coefficients, before = False, np.zeros((NODES + 1, 6)), h
     for _ in range(MOST_STEPS):
@@ -175,8 +175,11 @@ def begin_slip(
         if solved:
             found = series(start, values)
             error = error_of(found, 0.1 * tolerance, law)
-        if not error <= 1.0:
-            h *= max(0.25, 0.8 * error**-0.125) if solved else 0.25
+        kink = solved and h > BRIEF and crosses_any(values, memory, law)
+        if kink and known:
+            break
+        if not error <= 1.0 or kink:
+            h *= max(0.25, 0.8 * error**-0.125) if solved and not kink else 0.25
             if h < LEAST_SPAN:
                 memory[STATUS] = FAILS
                 break

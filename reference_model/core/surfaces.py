@@ -81,13 +81,15 @@ def sides(y: Unknowns, memory: FloatArray, law: Law) -> None:
 
 
 @part
-def crossed_any(y: Unknowns, memory: FloatArray, law: Law) -> bool:
-    """Return whether a kink of the forces was crossed, and store the new side."""
+def crosses_any(values: FloatArray, memory: FloatArray, law: Law) -> bool:
+    """Return whether one of ``values``, rows of unknowns without the time, lies beyond a kink of the forces."""
     result = False
     for which in range(SIDE_OF_STOP, SIDE_OF_HOLE + 1):
-        if exists(which, law) and memory[which] * value_of(which, y, law) < 0.0:
-            memory[which] = -memory[which]
-            result = True
+        if exists(which, law):
+            for i in range(len(values)):
+                v = values[i]
+                y = (v[0], v[1], v[2], v[3], v[4], v[5], 0.0)
+                result = result or memory[which] * value_of(which, y, law) < 0.0
     return result
 
 

@@ -93,10 +93,11 @@ def test_friction_holds_up_to_the_limit_surface():
 
 
 def test_slip_begins_where_it_grows_fastest():
-    law, rng = law_on(8), np.random.default_rng(1)
-    checked = 0
-    while checked < 20:
-        x, y, angle = *rng.uniform(-0.6, 0.6, 2), rng.uniform(-3.0, 3.0)
+    rng, checked = np.random.default_rng(1), 0
+    while checked < 200:
+        seed = 3 * int(rng.integers(1000)) + 2
+        law = law_on(seed, random_points(seed))
+        x, y, angle = *rng.uniform(-0.25, 0.25, 2), rng.uniform(-3.0, 3.0)
         if spare_of_points(x, y, angle, law) >= 0.0 or pivot_from_rest(x, y, angle, law)[0] >= 0:
             continue
         checked += 1
@@ -104,8 +105,8 @@ def test_slip_begins_where_it_grows_fastest():
         grown = np.array(growth(x, y, *(LEAST_SLIP * n).tolist(), angle, law)[:3])
         assert grown @ n > 0.0
         # The growth is flat there, so n is known to half its digits.
-        assert np.abs(grown - (grown @ n) * n).max() < 1e-8
-        for other in rng.normal(size=(20, 3)):
+        assert np.abs(grown - (grown @ n) * n).max() < 1e-7 * max(law.friction, grown @ n)
+        for other in rng.normal(size=(5, 3)):
             other /= np.linalg.norm(other)
             assert np.array(growth(x, y, *(LEAST_SLIP * other).tolist(), angle, law)[:3]) @ other <= grown @ n
 
