@@ -9,6 +9,7 @@ import secrets
 import shutil
 import stat
 import tempfile
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -43,6 +44,7 @@ def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     part = path.with_name(f".{secrets.token_hex(8)}{PART}")
     try:
         with open(part, mode.replace("w", "x"), **text) as stream:
+            weakref.finalize(stream, part.unlink, missing_ok=True)  # if the process ends while it writes
             yield stream
         with suppress(FileNotFoundError):
             shutil.copymode(path, part)
@@ -133,13 +135,14 @@ def locked(folder: Path) -> Iterator[None]:
                 pass
             if not (path.exists() and os.path.samestat(os.fstat(file.fileno()), path.stat())):
                 continue  # the last holder has just removed it
+            remove = weakref.finalize(file, path.unlink, missing_ok=True)  # also if the process ends
             try:
                 file.truncate(0)
                 print(f"process {os.getpid()} on {platform.node()}", end="", file=file, flush=True)
                 yield
             finally:
                 with suppress(OSError):
-                    path.unlink()
+                    remove()
             return
 
 
