@@ -19,6 +19,7 @@ from reference_model.systems import (
     finite_numbers,
     positive_number,
     require_flag,
+    require_kind,
     require_system,
     require_whole,
 )
@@ -70,7 +71,9 @@ def simulate_ensemble(
     """
     require_system(system)
     starts = _checked_starts(system, initial_states)
-    varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
+    parameters = {} if parameters is None else parameters
+    require_kind("parameters", parameters, Mapping)
+    varied = {name: _checked_parameter(system, name, values) for name, values in parameters.items()}
     _require_same_number(len(starts), varied)
     in_lanes = _in_lanes(system, contact) and not varied.keys() & set(OF_SUPPORT)
     duration, tolerance = positive_number("duration", duration, "s"), checked_tolerance(tolerance)

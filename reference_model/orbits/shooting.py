@@ -95,7 +95,7 @@ class ShootingProblem:
     precision: float = 0.0
 
     def __post_init__(self) -> None:
-        require_callable("simulate", self.simulate)
+        require_callable("simulate", self.simulate, "system", "initial_state", "times", named=["tolerance"])
         checked_tolerance(self.tolerance)
         if not 0.0 <= finite_number("precision", self.precision) <= MOST_NOISE:
             raise ValueError(f"precision = {self.precision:g}: it must lie between 0 and {MOST_NOISE:g}")

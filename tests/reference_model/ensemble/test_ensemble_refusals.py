@@ -22,6 +22,7 @@ START = [0.1, 0.0, 0.0, 0.0]
         (FIG5, START, {"duration": 0.0}, r"duration = 0 s: it must be > 0"),
         (FIG5, START, {"tolerance": 1.0}, r"tolerance = 1: it must lie between"),
         (FIG5, START, {"threads": 0}, r"threads = 0: it must be a whole number >= 1 and <= 1024"),
+        (FIG5, START, {"parameters": ""}, r"parameters = '': it must be a Mapping"),
         (FIG5, START, {"parameters": {"ofset": [0.1]}}, r"'ofset' cannot vary .* choose from mass, stiffness"),
         (FIG5, START, {"parameters": {"hardening": [-0.1]}}, r"hardening = -0.1 N/m³: it must be >= 0"),
         (FIG5, START, {"parameters": {"offset": 0.1}}, r"offset has shape \(\): it must be a list"),
