@@ -93,7 +93,7 @@ def _said(recorded: Recorded) -> str:
 
 
 SHORTER = {
-    r"every body loses (.*) of its speed per second": r"bodies lose \1 of speed per s",
+    r"every body loses (.*) of its speed per second": r"loses \1 of speed per s",
     r"the friction force on a disc is (.*) too large": r"friction on a disc \1 too large",
     r"a block that should rest (creeps .*)": r"\1",
     r"its error bar of (.*) exceeds .*": r"error bar of \1",

@@ -228,7 +228,7 @@ class Matrix:
         return Counter(cell.state for cell in cells if cell.evidence == evidence)
 
     def of_friction(self) -> int:
-        """Return the number of agreements on independent evidence that half the friction force would spoil."""
+        """Return the number of agreements on independent evidence that would fail with half the friction force."""
         agreeing = (cell for cell in self.cells if cell.state is State.AGREES)
         return sum(cell.evidence == "independent" and cell.claims[0].friction for cell in agreeing)
 

@@ -78,7 +78,7 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
 
 
 def force_beside(contact: IsotropicContact, load: float, moment: float) -> float | None:
-    """Return the largest force in N that friction can hold beside ``moment`` >= 0 in N m, None beyond the largest.
+    """Return the largest force in N that friction can hold with a moment >= 0 in N m, None if it cannot hold this.
 
     ``load`` is μN in N. As S ~ sin α grows, the moment on the limit surface grows and the force falls.
     """

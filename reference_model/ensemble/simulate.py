@@ -101,11 +101,11 @@ def _processors() -> int:
 
 
 def _in_lanes(system: System, contact: Contact | None) -> bool:
-    """Return whether lanes know a system; raise ``ValueError`` if compiled code does not know its contact."""
+    """Return whether lanes support a system; raise ``ValueError`` if no compiled code supports its contact."""
     if not is_compilable(contact_of(system, contact)):
         raise ValueError(
-            f"contact = {contact}: ensembles know a Ring, Points, and an Annulus under uniform pressure that is not "
-            "very thin; simulate single motions"
+            f"contact = {contact}: ensembles support a Ring, Points, and an Annulus under uniform pressure that is "
+            "not very thin; simulate single motions"
         )
     few = (getattr(system, "contact_points", None) or 0) <= MOST_POINTS
     return system.linear_support and contact is None and few

@@ -37,7 +37,7 @@ def test_the_table_says_why_an_engine_does_not_agree(script):
     assert "| ✓ | ✓ | cone |" in lines["reference<br>exudyn<br>exudyn-native"]
     assert "| ✗ 1 of 6 cone | cone |" in lines["Bullet"]
     assert lines["Bullet"].endswith("| friction on a disc 21 % too large |")
-    assert lines["Jolt"].endswith("| bodies lose 4.9 to 5.0 % of speed per s |")
+    assert lines["Jolt"].endswith("| loses 4.9 to 5.0 % of speed per s |")
     assert lines["Chipmunk"].endswith("| friction on a disc 45 % too large |")
     assert "| ? 2 of 5 | ✓ contact |" in lines["Rapier"]
     assert lines["Rapier"].endswith("| error bar of 0.33 m |")
