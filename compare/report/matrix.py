@@ -63,7 +63,7 @@ WORST_FIRST = (
 
 @dataclass(frozen=True)
 class Cell:
-    """One engine's answer to one claim: the worst state of usually one claim.
+    """One engine's result for one row: the worst state of its claims, usually only one.
 
     ``reason`` says why a verdict is missing; ``evidence`` is the kind of evidence, "" without a verdict.
     ``implied_by`` is the claim, or the engine with the same claim, whose verdict implies the present verdict.

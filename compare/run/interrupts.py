@@ -24,7 +24,7 @@ SIGNALS = signal.SIGINT, signal.SIGTERM
 LOOKS_EVERY = 0.1
 """Time in s between two looks at the exception."""
 
-LONGEST, CLEANING = 1.5, 0.3
+LONGEST, CLEANING = 1.0, 0.3
 """Longest time in s from a signal until the exception is caught, and of the cleaning after that."""
 
 SHOW_CURSOR = "\x1b[?25h"
@@ -38,12 +38,13 @@ class _Interrupt(KeyboardInterrupt):
 class _Watch(threading.Thread):
     """Waits for the first signal, raises its exception again if it is lost, and ends the process if it is late."""
 
+    numbers: socket.socket
+    """Receives the numbers of signals at once, even while the main thread runs compiled code."""
+
     def __init__(self) -> None:
         super().__init__(daemon=True)
         self.came = self.caught = False
         self._error: Any = lambda: None
-        self._reader, self.writer = socket.socketpair()  # Python writes the signal's number, in any thread
-        self.writer.setblocking(False)
 
     def handle(self, number: int, frame: FrameType | None) -> NoReturn:
         raise self._new()
@@ -54,9 +55,12 @@ class _Watch(threading.Thread):
         return error
 
     def run(self) -> None:
-        number = 0
-        while number not in SIGNALS:
-            number = self._reader.recv(1)[0]
+        with self.numbers:
+            while number := self.numbers.recv(1):  # nothing after the end of the context
+                if number[0] in SIGNALS:
+                    self._insist(number[0])
+
+    def _insist(self, number: int) -> None:
         self.came, end = True, time.monotonic() + LONGEST
         while not self.caught:
             time.sleep(LOOKS_EVERY)
@@ -89,7 +93,9 @@ def ending_soon() -> Iterator[None]:
     for number, handler in before.items():
         if handler in (signal.SIG_DFL, signal.default_int_handler):
             signal.signal(number, _watch.handle)
-    others = signal.set_wakeup_fd(_watch.writer.fileno(), warn_on_full_buffer=False)
+    _watch.numbers, sender = socket.socketpair()
+    sender.setblocking(False)
+    others = signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
     sys.unraisablehook = _unraisable
     _watch.start()
     try:
@@ -106,6 +112,7 @@ def ending_soon() -> Iterator[None]:
         _end()
     finally:
         signal.set_wakeup_fd(others)
+        sender.close()
         for number, handler in before.items():
             signal.signal(number, handler)
 

@@ -198,7 +198,9 @@ def unpacked(archive: Path, most: int) -> tempfile.TemporaryDirectory[str]:
             raise ValueError(
                 f"{str(archive)!r} takes {size} bytes unpacked, but its description allows {most}"
             )
-        folder = tempfile.TemporaryDirectory(dir=archive.parent, prefix=f"{archive.stem}-")
+        folder = tempfile.TemporaryDirectory(
+            dir=archive.parent, prefix=f"{archive.stem}-", ignore_cleanup_errors=True
+        )
         for name in content.namelist():
             try:
                 content.extract(name, folder.name)

@@ -12,7 +12,7 @@ The axis of the contact is the z-axis of the master's body, through its node, or
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
 ``rotationMarker1`` of Exudyn's joints; the x-axis on the disc points to the first contact point. The plane of contact
 passes through the disc's node or marker, across this axis; a small tilt of the disc is neglected. The load acts only
-through friction and presses nothing together.
+through friction; it does not press the bodies together.
 
 *Functions.* Coefficient and load may be functions of any of these arguments, by name and in any order:
 

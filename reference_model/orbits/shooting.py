@@ -323,9 +323,9 @@ def require_start(
         names = " or ".join("None" if kind is type(None) else kind.__name__ for kind in guesses)
         raise ValueError(f"guess = {guess!r}: it must be {names}")
     if isinstance(guess, Orbit | Whirl):
-        checked_state(system, guess.state)
+        checked_state(system, guess.state, "guess")
     elif isinstance(guess, Trajectory):
-        checked_state(system, guess.at_end)
+        checked_state(system, guess.at_end, "guess")
 
 
 def without_angle(state: FloatArray) -> FloatArray:
