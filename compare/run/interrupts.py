@@ -5,6 +5,7 @@ and compiled code such as a compiler delays it.
 """
 
 import atexit
+import gc
 import os
 import signal
 import socket
@@ -47,6 +48,7 @@ class _Watch(threading.Thread):
         self._error: Any = lambda: None
 
     def handle(self, number: int, frame: FrameType | None) -> NoReturn:
+        gc.freeze()  # collecting the objects of an interrupted compiler would take seconds
         raise self._new()
 
     def _new(self) -> _Interrupt:  # a variable of ``handle`` would keep the exception alive
