@@ -13,6 +13,7 @@ from exudyn_models.parts.rotational.couplings import Freedom, RotorCoupling, fre
 from exudyn_models.parts.rotational.sliders import add_slider_friction
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, items
 from reference_model.systems import (
+    LEAST,
     FloatArray,
     checked_parameter,
     finite_number,
@@ -211,7 +212,7 @@ def add_road_load(
         Way per angle in m if the vehicle is a rotor, 1 for an ``ObjectMass1D``.
 
     """
-    mass, radius = positive_number("mass", mass, "kg"), positive_number("radius", radius, "m")
+    mass, radius = checked_parameter("mass", mass, "kg", LEAST), positive_number("radius", radius, "m")
     rolling = checked_parameter("rolling", rolling, "", 0.0)
     drag = checked_parameter("drag_area", drag_area, "m²", 0.0) / 2.0
     drag *= checked_parameter("air_density", air_density, "kg/m³", 0.0)

@@ -171,11 +171,12 @@ def test_wrong_tables_rotors_and_shifts_are_refused():
         add_torque(mbs, None, lambda time, angle, speed: 0.0)
     for more, words in (
         ({"drag_area": -1.0, "air_density": -1.0}, "drag_area = -1 m²"),
+        ({"mass": 1e308}, "mass = 1e\\+308 kg: its size must be between"),
         ({"rolling": -0.1}, r"rolling = -0\.1 : it must be >= 0"),
         ({"slope": 2.0}, "slope = 2 rad: it must lie between"),
     ):
         with pytest.raises(ValueError, match=words):
-            add_road_load(mbs, one, mass=1.0, **more)
+            add_road_load(mbs, one, **{"mass": 1.0} | more)
     with pytest.raises(ValueError, match="mbs = True: it must be a MainSystem"):
         add_road_load(True, one, mass=1.0)
     gears = {"1": ["a"], "2": ["b"]}
