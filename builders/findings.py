@@ -2,9 +2,9 @@
 
 ``builders/findings.md`` and the paper's source name each number as in ``#n("fig05: dividing velocity, reference")``:
 a study and a quote of one of its claims (see ``compare.report.quotes``). "claims", "checks" and
-"verdicts: independent" are counts of a whole report. "verdicts: friction" counts those of the latter that half the
-friction would spoil, and "engine: Bullet" is its sentence about an engine. A number of a claim links to the claim at
-the end of the page. README contains the numbers of ``IN_README`` literally::
+"verdicts: independent" are counts of a whole report. "verdicts: friction" counts the independent verdicts that would
+fail with half the friction, and "engine: Bullet" is its sentence about an engine. A number of a claim links to the
+claim at the end of the page. README contains the numbers of ``IN_README`` literally::
 
     python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md and its figures
     python builders/findings.py check report/results.json   # fails if the report deviates from them

@@ -13,14 +13,12 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from compare.claims import Recorded
-from compare.claims.claim import Verdict
 from compare.diagnosis.row import Row
 from compare.diagnosis.run import row_of
 from compare.foreign import CASES, recordings
 from compare.output.figures import paper_style
 from compare.report.at_a_glance import best_of
 from compare.report.matrix import state_of
-from compare.report.numbers import error_text
 from compare.studies.engines.foreign_engines.theory import recorded_claims
 
 PICTURE, README = Path(__file__).with_name("engines.png"), Path(__file__).parents[1] / "README.md"
@@ -94,39 +92,42 @@ def _said(recorded: Recorded) -> str:
     return f"{', '.join(bad)} of {len(marks)}" if bad else "✓"
 
 
+SHORTER = {
+    r"every body loses (.*) of its speed per second": r"loses \1 of speed per s",
+    r"the friction force on a disc is (.*) too large": r"friction on a disc \1 too large",
+    r"a block that should rest (creeps .*)": r"\1",
+    r"its error bar of (.*) exceeds .*": r"error bar of \1",
+}
+"""Reasons in README, by the reasons of the findings page."""
+
+
 def _why(recorded: Recorded) -> list[str]:
     """Return the main clauses of the reasons of ✗, or of ? if there is no ✗."""
     by_mark: dict[str, list[str]] = {"✗": [], "?": []}
     for claim in recorded.claims:
         why = re.split(r" with | under |, ", recorded.reasons.get(claim.sentence, ""))[0]
+        for reason, short in SHORTER.items():
+            why = re.sub(reason, short, why)
         by_mark.get(state_of(claim).symbol, []).append(why)
     return list(dict.fromkeys(by_mark["✗"] or by_mark["?"]))
 
 
 def table() -> str:
-    """Return the table of README, one row for each engine."""
+    """Return the table of README, one row for each engine, or for engines with equal rows."""
     found: dict[str, dict[Recorded, Row]] = {}
     for row, recorded in ENGINES:
         found.setdefault(recorded.engine, {})[recorded] = row
-    lines = []
+    lines: dict[str, list[str]] = {}
     for engine, rows in found.items():
         best, shipped = best_of(list(rows)), next(one for one in rows if one.shipped)
-        laws = " → ".join(dict.fromkeys((law_of(rows[shipped]), law_of(rows[best]))))
-        agreeing = [one for one in best.claims if one.verdict is Verdict.AGREES]
-        worst = max(agreeing, key=lambda one: float(one.measured))
-        error = f"{error_text(float(worst.measured), 1)} m, {_short(best.costs[worst.sentence])}"
-        why = "; ".join(
-            [f"as shipped: {one}" for one in _why(shipped)[:1] if one not in _why(best)] + _why(best)
-        )
+        words = (law_of(rows[one]).partition(":")[0].removeprefix("impulse ") for one in (shipped, best))
+        laws = " → ".join(dict.fromkeys(words))
+        why = next(iter(_why(best) + _why(shipped)), "")
         setting = f"{_said(best)} {best.setting}".strip()
-        lines.append(f"| {engine} | {_said(shipped)} | {setting} | {laws} | {error} | {why} |")
-    head = (
-        "| engine | as shipped | best setting | friction law | largest error there | why not ✓ |\n"
-        + 6 * "|---"
-        + "|"
-    )
-    others = sorted(lines[3:], key=lambda line: "✓?✗".index(line.split("| ")[3][0]))
-    return "\n".join([head, *lines[:3], *others])
+        lines.setdefault(f"{_said(shipped)} | {setting} | {laws} | {why} |", []).append(engine)
+    others = sorted(lines, key=lambda line: "✓?✗".index(line.split("| ")[1][0]))
+    head = "| engine | as shipped | best setting | law | why not ✓ |\n" + 5 * "|---" + "|"
+    return "\n".join([head, *(f"| {'<br>'.join(lines[line])} | {line}" for line in others)])
 
 
 if __name__ == "__main__":

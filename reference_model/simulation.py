@@ -40,7 +40,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin, a disc or a joint under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
-    Raises ``ValueError`` if an argument is invalid or compiled code does not know the contact, and
+    Raises ``ValueError`` if an argument is invalid or compiled code does not support the contact, and
     ``SimulationError`` if the integrator fails.
 
     Parameters
@@ -60,9 +60,9 @@ def simulate(
     contact
         Friction law of a disc; None for the law of the parameters.
     compiled
-        Whether to use compiled code. The result is the same, and the first call on a machine compiles. The code knows
-        pins, rings, contact points and annuli under uniform pressure. None: use it if this machine has it, or if runs
-        of this process in Python have taken as long as compiling would.
+        Whether to use compiled code. The result is the same, and the first call on a machine compiles. The code
+        supports pins, rings, contact points and annuli under uniform pressure. None: use it if this machine has it,
+        or if runs of this process in Python have taken as long as compiling would.
 
     """
     global _interpreted
@@ -77,8 +77,8 @@ def simulate(
     law = contact_of(system, contact)
     if compiled and not is_compilable(law):
         raise ValueError(
-            f"contact = {contact}: compiled code knows a Ring, Points, and an Annulus under uniform pressure that is "
-            "not very thin; omit compiled=True"
+            f"contact = {contact}: compiled code supports a Ring, Points, and an Annulus under uniform pressure that "
+            "is not very thin; omit compiled=True"
         )
     avoidable = compiled is None and is_compilable(law)
     if compiled or (avoidable and (_interpreted > COMPILATION or is_compiled())):

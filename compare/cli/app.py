@@ -9,41 +9,35 @@ from __future__ import annotations
 import codecs
 import io
 import os
-import signal
 import sys
-import threading
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
-try:
-    import typer
+import typer
 
-    from compare.cli.command import (
-        BAD_INPUT,
-        FINE,
-        INTERRUPTED,
-        SOMETHING_DIFFERS,
-        BadInputError,
-        Command,
-        EngineFailedError,
-        InterruptedByUserError,
-        Program,
-        close_output,
-        printing,
-        say,
-    )
-    from compare.cli.diff import diff
-    from compare.cli.export_fmu import export_fmu
-    from compare.cli.matrix import matrix
-    from compare.cli.options import studies_of
-    from compare.cli.plan import plan
-    from compare.cli.report import FULL, report
-    from compare.cli.simulate import simulate
-    from compare.cli.sweep import sweep
-except KeyboardInterrupt:  # Ctrl-C during the imports
-    print("Interrupted.", file=sys.stderr)
-    sys.exit(130)
+from compare.cli.command import (
+    BAD_INPUT,
+    FINE,
+    INTERRUPTED,
+    SOMETHING_DIFFERS,
+    BadInputError,
+    Command,
+    EngineFailedError,
+    InterruptedByUserError,
+    Program,
+    close_output,
+    printing,
+    say,
+)
+from compare.cli.diff import diff
+from compare.cli.export_fmu import export_fmu
+from compare.cli.matrix import matrix
+from compare.cli.options import studies_of
+from compare.cli.plan import plan
+from compare.cli.report import FULL, report
+from compare.cli.simulate import simulate
+from compare.cli.sweep import sweep
 
 if TYPE_CHECKING:
     from compare.claims.study import Study
@@ -136,11 +130,8 @@ app.add_typer(simulate, name="simulate")
 app.add_typer(sweep, name="sweep")
 
 
-def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | None = None) -> None:
-    """Run the command line and exit with its status.
-
-    ``studies`` replaces the studies of the paper in a project with its own studies and engines.
-    """
+def run(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | None = None) -> None:
+    """Run the command line with open streams and exit with its status."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # closed by the caller, so the next file would receive its number
             setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
@@ -149,20 +140,7 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
         if isinstance(stream, io.TextIOWrapper):
             unset = codecs.lookup(stream.encoding).name == "ascii"  # no locale, such as in a container
             stream.reconfigure(encoding="utf-8" if unset else None, errors="backslashreplace")
-    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:  # end like Ctrl-C, which removes temporary files
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
-    sys.unraisablehook = _interrupt_again
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
-
-
-def _interrupt_again(lost: Any) -> None:
-    """Repeat Ctrl-C if it came in a callback, such as the callback of a weak reference, which loses exceptions."""
-    if lost.exc_type is not KeyboardInterrupt:
-        sys.__unraisablehook__(lost)
-    elif threading.current_thread() is threading.main_thread():  # ``Threads`` repeats it for other threads
-        timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGTERM))
-        timer.daemon = True
-        timer.start()
 
 
 def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -> int:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from typer.core import TyperCommand, TyperGroup
 
 from compare.output.outside_text import printable
+from compare.run.interrupts import caught
 from compare.run.statuses import BAD_INPUT as BAD_INPUT
 from compare.run.statuses import FINE as FINE
 from compare.run.statuses import INTERRUPTED as INTERRUPTED
@@ -101,6 +102,8 @@ def refused() -> Iterator[None]:
 
 def say(sentence: str, result: int) -> int:
     """Print a sentence on the error stream; return ``result``."""
+    if result == INTERRUPTED:
+        caught()
     print(printable(sentence), file=sys.stderr)
     return result
 

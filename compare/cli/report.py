@@ -251,9 +251,9 @@ def _run(studies: tuple[Study, ...], engines: tuple[Engine, ...], output: Path, 
 def _write(result: Run, output: Path) -> Matrix:
     """Write the report without interruption by Ctrl-C."""
     from compare.report.write import write_report
-    from compare.run.workers import interrupts_ignored
+    from compare.run.interrupts import postponed
 
-    with interrupts_ignored():
+    with postponed():
         return write_report(result, output)
 
 

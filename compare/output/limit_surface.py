@@ -20,7 +20,8 @@ def draw_limit_surface(
 ) -> None:
     """Draw the curves where planes through the axis of the moment cut the limit surface of a disc at φ = 0.
 
-    The force has an angle of ``directions`` in rad to the x-axis. Forces are divided by μN, moments also (in m).
+    The force has an angle of ``directions`` in rad to the x-axis. Forces and moments are divided by μN, so moments
+    are in m.
     """
     lever = max(abs(largest_wrench(contact, 0j, sign)[1]) for sign in (1.0, -1.0))
     loads = np.exp(2j * math.pi * np.linspace(0.0, 1.0, SAMPLES)).tolist()

@@ -9,6 +9,7 @@ import secrets
 import shutil
 import stat
 import tempfile
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -43,12 +44,13 @@ def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     part = path.with_name(f".{secrets.token_hex(8)}{PART}")
     try:
         with open(part, mode.replace("w", "x"), **text) as stream:
+            weakref.finalize(stream, _remove, part)  # if the process ends while it writes
             yield stream
         with suppress(FileNotFoundError):
             shutil.copymode(path, part)
         os.replace(part, path)
     except BaseException as error:
-        part.unlink(missing_ok=True)
+        _remove(part)
         if isinstance(error, OSError) and error.filename in (None, str(part)):
             error.filename = str(path)
         raise
@@ -133,14 +135,21 @@ def locked(folder: Path) -> Iterator[None]:
                 pass
             if not (path.exists() and os.path.samestat(os.fstat(file.fileno()), path.stat())):
                 continue  # the last holder has just removed it
+            remove = weakref.finalize(file, _remove, path)  # also if the process ends
             try:
                 file.truncate(0)
                 print(f"process {os.getpid()} on {platform.node()}", end="", file=file, flush=True)
                 yield
             finally:
+                remove()
                 with suppress(OSError):
-                    path.unlink()
+                    file.close()
             return
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):
+        path.unlink()
 
 
 def _not_a_link(path: str, flags: int) -> int:

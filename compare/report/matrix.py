@@ -63,7 +63,7 @@ WORST_FIRST = (
 
 @dataclass(frozen=True)
 class Cell:
-    """One engine's answer to one claim: the worst state of usually one claim.
+    """One engine's result for one row: the worst state of its claims, usually only one.
 
     ``reason`` says why a verdict is missing; ``evidence`` is the kind of evidence, "" without a verdict.
     ``implied_by`` is the claim, or the engine with the same claim, whose verdict implies the present verdict.
@@ -228,7 +228,7 @@ class Matrix:
         return Counter(cell.state for cell in cells if cell.evidence == evidence)
 
     def of_friction(self) -> int:
-        """Return the number of agreements on independent evidence that half the friction force would spoil."""
+        """Return the number of agreements on independent evidence that would fail with half the friction force."""
         agreeing = (cell for cell in self.cells if cell.state is State.AGREES)
         return sum(cell.evidence == "independent" and cell.claims[0].friction for cell in agreeing)
 

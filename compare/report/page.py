@@ -106,7 +106,7 @@ def environment() -> Environment:
 def summary(matrix: Matrix) -> str:
     """Return the headline: "41 checks against independent evidence and 7 others agree, 1 differs, 0 inconclusive".
 
-    The sentence also says how many independent verdicts half the friction force would spoil, unless it spoils all.
+    The sentence also says how many independent verdicts would fail with half the friction force, unless all would.
     """
     count, of_friction = matrix.of_evidence("independent")[State.AGREES], matrix.of_friction()
     more = matrix.totals[State.AGREES] - count

@@ -10,6 +10,7 @@ from compare.claims.claim import THEORY, Verdict
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
 from compare.engines import Engine, engines, is_registered, known_name, owner_of, told_apart
+from compare.run.interrupts import caught
 from compare.run.levels import LIMITS
 from compare.run.measuring import Course, Work, measured
 from compare.run.provenance import engine_stamp, engine_version
@@ -130,6 +131,7 @@ def run(
         try:
             runner.work({engine.name: engine for engine in engines}, resume)
         except KeyboardInterrupt:
+            caught()
             result.interrupted = True
     return result
 

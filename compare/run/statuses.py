@@ -5,7 +5,7 @@ from typing import NamedTuple
 FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 
 LEAST_SHARE = 0.5
-"""Smallest share of its claims or parts that shows an engine to be right."""
+"""Smallest share of claims or parts that must be measured before an engine counts as right."""
 
 STATUSES = {
     FINE: "nothing differs, and at least half of the claims or parts were measured",

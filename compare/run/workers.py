@@ -19,6 +19,7 @@ from collections import deque
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from types import TracebackType
@@ -27,6 +28,7 @@ from typing import Any
 from compare.engines.outside.processor_time import is_over, processor_time, processor_time_of
 from compare.output.outside_text import Failure as Failure
 from compare.output.outside_text import cause_of_end, printable
+from compare.run.interrupts import ignored, postponed
 
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
@@ -191,9 +193,9 @@ class _Worker:
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end, spending), daemon=True)
         self._errors = _Errors()
-        # only this process handles Ctrl-C
         environment = ONE_THREAD | SAFE_PATH | {"TMPDIR": temporary}
-        with interrupts_ignored(), _environment(environment), self._errors.written():
+        resource_tracker.ensure_running()  # which unblocks signals
+        with postponed(), _environment(environment), self._errors.written():
             self._process.start()
         other_end.close()
         spending.close()
@@ -298,7 +300,7 @@ class _Errors:
 
 
 def _serve(connection: Connection, spending: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
+    ignored()  # only the main process handles Ctrl-C
     if hasattr(os, "setsid"):
         os.setsid()  # signals to the group of an engine's process stay there
     here = os.getpid()
@@ -371,19 +373,6 @@ def lacks_memory(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
-
-
-@contextmanager
-def interrupts_ignored() -> Iterator[None]:
-    """Ignore Ctrl-C in this context and in processes started in it; has no effect outside the main thread."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

@@ -181,7 +181,7 @@ def files_in(folder: Path) -> list[Path]:
 
 
 def member(archive: Path, name: str) -> bytes:
-    """Return a small file of an archive; raise any exception if there is none."""
+    """Return the contents of a small file in an archive; raise an exception of any kind if it is missing."""
     if not archive.is_file():  # reading a pipe could take for ever
         raise ValueError(f"{str(archive)!r} is not a file")
     with ZipFile(archive) as content, content.open(name) as stream:
@@ -198,7 +198,9 @@ def unpacked(archive: Path, most: int) -> tempfile.TemporaryDirectory[str]:
             raise ValueError(
                 f"{str(archive)!r} takes {size} bytes unpacked, but its description allows {most}"
             )
-        folder = tempfile.TemporaryDirectory(dir=archive.parent, prefix=f"{archive.stem}-")
+        folder = tempfile.TemporaryDirectory(
+            dir=archive.parent, prefix=f"{archive.stem}-", ignore_cleanup_errors=True
+        )
         for name in content.namelist():
             try:
                 content.extract(name, folder.name)

@@ -22,7 +22,7 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
     ``state``, shape (4,) or (6,) as in ``simulate``, is usually an equilibrium. Raises ``ValueError`` if it does not
     fit the system, or if the contact or a point of it is at rest.
     """
-    start = checked_state(system, state)
+    start = checked_state(system, state, "state")
     contact = RegularisedContact(system, REGULARISATION)
     if system.friction_force > 0.0 and contact.slip_ratios(start[None, :]).min() < 1.0:
         raise ValueError(

@@ -17,7 +17,7 @@ from exudyn_models.solver.checks.jumps import watch_powers
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, at_assembly, items, node_sensor
 from exudyn_models.solver.solver_run import quiet
 from exudyn_models.solver.starting_rates import Works
-from reference_model.systems import FloatArray, positive_number, require_callable, require_kind
+from reference_model.systems import FloatArray, positive_number, require_callable, require_kind, shown
 
 Power: TypeAlias = Callable[[Any, float], float]
 """Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
@@ -166,6 +166,8 @@ def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
 
 def spring_energy(connector: Any) -> Energy:
     """Return the energy of a native connector with springs, from its ``ObjectIndex``."""
+    if type(connector).__name__ != "ObjectIndex":
+        raise ValueError(f"connector = {shown(connector)}: it must be the ObjectIndex of a spring")
     return _SpringEnergy(connector)
 
 

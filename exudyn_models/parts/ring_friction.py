@@ -12,7 +12,7 @@ The axis of the contact is the z-axis of the master's body, through its node, or
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
 ``rotationMarker1`` of Exudyn's joints; the x-axis on the disc points to the first contact point. The plane of contact
 passes through the disc's node or marker, across this axis; a small tilt of the disc is neglected. The load acts only
-through friction and presses nothing together.
+through friction; it does not press the bodies together.
 
 *Functions.* Coefficient and load may be functions of any of these arguments, by name and in any order:
 
@@ -56,6 +56,7 @@ from exudyn_models.solver.rows.moment_loads import MomentLoadedStick, SelfEnergi
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import (
+    MOST_COUNT,
     FloatArray,
     Place,
     checked_places,
@@ -302,7 +303,7 @@ def _checked_geometry(
     if inner_radius is None and outer_radius is None:
         radius, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
         points, last = (CONTINUOUS, radius) if places is None else (len(places), table_of(places))
-        if pressure != "uniform":
+        if not isinstance(pressure, str) or pressure != "uniform":
             raise ValueError(
                 f"pressure = {pressure!r}: it needs an annulus, with inner_radius and outer_radius"
             )
@@ -340,7 +341,8 @@ def checked_contact(
         contact_points = 1
     if contact_points is None:
         return radius, None, epsilon
-    if not (number := finite_number("contact_points", contact_points)).is_integer() or number < 1:
+    number = finite_number("contact_points", contact_points)
+    if not (number.is_integer() and 1 <= number <= MOST_COUNT):
         raise ValueError(
             f"contact_points = {contact_points}: it must be a whole number >= 1, a list of (x, y, share), or None "
             "for the continuous ring"

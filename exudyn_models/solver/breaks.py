@@ -10,7 +10,7 @@ import numpy as np
 from reference_model.systems import finite_numbers, positive_number, require_callable, require_kind, shown
 
 GAP = 1e-13
-"""Share of the run's duration omitted beside a break, so that no step sees both sides."""
+"""Share of the run's duration omitted next to a break, so that no step sees both sides."""
 
 
 def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from reference_model.contact.contact_law import IsotropicContact, Shares, Slopes
 from reference_model.contact.elliptic import mean_curvatures, mean_directions
-from reference_model.systems import finite_number, require_whole
+from reference_model.systems import finite_number, require_callable, require_whole
 
 CLUSTERING = 3
 """Exponent q of the substitution r = r₀ + (r₁ − r₀)·t^q on either side of the kink r₀.
@@ -64,10 +64,8 @@ class Annulus(IsotropicContact):
         if outer <= inner:
             raise ValueError(f"outer_radius = {outer:g} m: it must be > inner_radius = {inner:g} m")
         require_whole("rings", self.rings, least=1, most=1000)
-        if self.pressure is not None and not callable(self.pressure):
-            raise ValueError(
-                f"pressure = {self.pressure!r}: it must be a function of the radius, or None for a uniform one"
-            )
+        if self.pressure is not None:
+            require_callable("pressure", self.pressure, "radius")
         self._loads(inner)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:

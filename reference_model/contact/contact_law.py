@@ -9,7 +9,7 @@ force is opposite to u, and nothing depends on the direction of u or on the angl
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -20,8 +20,11 @@ from reference_model.systems import (
     FloatArray,
     PinOnDisc,
     System,
+    finite_number,
     positive_number,
+    require_kind,
     require_system,
+    shown,
 )
 
 NONE = 1e-300
@@ -195,16 +198,28 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
         if system.contact_points is None:
             return Ring(system.contact_radius)
         return PointsOnRing(system.contact_radius, system.contact_points)
+    return checked_contact(contact)
+
+
+def checked_contact(contact: Any) -> IsotropicContact | Points:
+    """Return ``contact``; raise ``ValueError`` unless it is a law of a disc."""
     if not isinstance(contact, IsotropicContact | Points):
         raise ValueError(
-            f"contact = {contact}: it must be an isotropic law, like Ring(radius), or Points([(x, y, share), ...])"
+            f"contact = {shown(contact)}: it must be an isotropic law, like Ring(radius), or "
+            "Points([(x, y, share), ...])"
         )
     return contact
 
 
+def checked_vector(name: str, vector: Any) -> complex:
+    """Return a vector x + iy; raise ``ValueError`` unless it is a finite number, which may be complex."""
+    parts = (vector.real, vector.imag) if isinstance(vector, complex) else (vector, 0.0)
+    return complex(*(finite_number(name, part) for part in parts))
+
+
 def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
     """Return ``contact`` or the law of ``system``; raise ``ValueError`` naming ``what`` for a law of points."""
-    require_system(system, DiscOnDisc)
+    require_kind("disc", system, DiscOnDisc)
     law = contact_of(system, contact)
     if not isinstance(law, IsotropicContact):
         given = f"contact_points = {system.contact_points}" if contact is None else f"contact = {contact}"

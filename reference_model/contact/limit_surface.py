@@ -20,9 +20,9 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.contact.contact_law import IsotropicContact, Shares
+from reference_model.contact.contact_law import IsotropicContact, Shares, checked_contact, checked_vector
 from reference_model.contact.points import Points
-from reference_model.systems import ComplexArray, FloatArray
+from reference_model.systems import ComplexArray, FloatArray, finite_number
 
 MOST_ITERATIONS = 200
 
@@ -35,7 +35,8 @@ def wrench_of_slip(contact: IsotropicContact | Points, slip: complex, spin: floa
 
     The slip, u of the centre in m/s and w = φ̇ − ω in rad/s, is normal to the limit surface there.
     """
-    friction, moment = contact.force_and_moment(slip, -spin, 0.0)
+    slip, spin = checked_vector("slip", slip), finite_number("spin", spin)
+    friction, moment = checked_contact(contact).force_and_moment(slip, -spin, 0.0)
     return -friction, -moment
 
 
@@ -47,6 +48,8 @@ def largest_wrench(
     ``force`` and ``moment`` (about the centre, in m times the unit of the force) give the direction. The result is in
     N per N of μN and in m. Raises ``ValueError`` if both are zero.
     """
+    contact, force = checked_contact(contact), checked_vector("force", force)
+    moment = finite_number("moment", moment)
     if force == 0.0 and moment == 0.0:
         raise ValueError("force and moment are 0: they must have a direction")
     if isinstance(contact, Points):
@@ -75,7 +78,7 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
 
 
 def force_beside(contact: IsotropicContact, load: float, moment: float) -> float | None:
-    """Return the largest force in N that friction can hold beside ``moment`` >= 0 in N m, None beyond the largest.
+    """Return the largest force in N that friction can hold with a moment >= 0 in N m, None if it cannot hold this.
 
     ``load`` is μN in N. As S ~ sin α grows, the moment on the limit surface grows and the force falls.
     """

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from reference_model.contact.points import Points
-from reference_model.systems import ComplexArray, finite_number, require_whole
+from reference_model.systems import ComplexArray, finite_number, require_whole, shown
 
 MOST_CORNERS = 300  # the time to cut triangles off grows with the cube
 INSIDE = np.array([[2.0, 0.5, 0.5], [0.5, 2.0, 0.5], [0.5, 0.5, 2.0]]) / 3.0
@@ -39,8 +39,10 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
 def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
     try:
         around = [complex(finite_number("corners", x), finite_number("corners", y)) for x, y in corners]
-    except TypeError:
-        raise ValueError(f"corners = {corners!r}: it must be a list of (x, y) in m") from None
+    except (TypeError, ValueError) as error:
+        if "must be" in str(error):
+            raise
+        raise ValueError(f"corners = {shown(corners)}: it must be a list of (x, y) in m") from None
     if len(around) < 3:
         raise ValueError(f"corners = {corners}: a polygon has at least three corners")
     require_whole("number of corners", len(around), least=3, most=MOST_CORNERS)

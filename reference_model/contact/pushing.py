@@ -18,9 +18,10 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
+from reference_model.contact.contact_law import checked_vector
 from reference_model.contact.limit_surface import PointsLimit
 from reference_model.contact.points import Points
-from reference_model.systems import finite_number, require_whole
+from reference_model.systems import finite_number, require_kind, require_whole
 
 ACROSS_JUMP = 1e-9
 """Distance of two spins on both sides of a jump of the moment, relative to the largest possible spin."""
@@ -44,7 +45,9 @@ class Pushing:
     friction_coefficient: float
 
     def __post_init__(self) -> None:
-        _require_finite(edge=self.edge, normal=self.normal)
+        require_kind("contact", self.contact, Points)
+        for name in ("edge", "normal"):
+            object.__setattr__(self, name, checked_vector(name, getattr(self, name)))
         if self.normal == 0.0:
             raise ValueError("normal = 0: it must point into the body")
         if finite_number("friction_coefficient", self.friction_coefficient) < 0.0:
@@ -56,7 +59,7 @@ class Pushing:
         The body rests until the hand touches the edge, and after the hand leaves it. Midpoint steps have an error of
         second order in 1/``steps``. Raises ``ValueError`` if the hand starts inside the body.
         """
-        _require_finite(start=start, end=end)
+        start, end = checked_vector("start", start), checked_vector("end", end)
         require_whole("steps", steps, least=1)
         way = end - start
         gap, approach = ((vector * self.normal.conjugate()).real for vector in (self.edge - start, way))
@@ -123,9 +126,3 @@ class Pushing:
         normal = self.normal.conjugate()
         scale = (velocity * normal).real / ((slip + 1j * spin * arm) * normal).real
         return scale * slip, scale * spin
-
-
-def _require_finite(**vectors: complex) -> None:
-    for name, vector in vectors.items():
-        if not cmath.isfinite(vector):
-            raise ValueError(f"{name} = {vector}: it must be finite")

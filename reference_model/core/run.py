@@ -44,7 +44,7 @@ from reference_model.numerics.parts import part, written_out
 from reference_model.systems import FloatArray
 
 AT_REST = 1e-15
-"""Slip speed of a point that is rounding error, as a share of the centre's slip speed."""
+"""Slip speed of a point that counts as rounding error, as a share of the centre's slip speed."""
 
 NO_CREEP = (0.0, 0.0, 0.0, 0.0)
 

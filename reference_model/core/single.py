@@ -114,7 +114,7 @@ def _digest() -> str:
 
 
 def is_compilable(contact: IsotropicContact | Points) -> bool:
-    """Return whether compiled code knows a law: a pin, a ring, points, and an annulus under uniform pressure."""
+    """Return whether compiled code supports a law: a pin, a ring, points, and an annulus under uniform pressure."""
     if isinstance(contact, Annulus):
         return contact.pressure is None and contact.inner_radius <= (1.0 - THINNEST) * contact.outer_radius
     return isinstance(contact, Pin | Ring | Points)

@@ -19,6 +19,7 @@ from reference_model.systems import (
     finite_numbers,
     positive_number,
     require_flag,
+    require_kind,
     require_system,
     require_whole,
 )
@@ -70,7 +71,9 @@ def simulate_ensemble(
     """
     require_system(system)
     starts = _checked_starts(system, initial_states)
-    varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
+    parameters = {} if parameters is None else parameters
+    require_kind("parameters", parameters, Mapping)
+    varied = {name: _checked_parameter(system, name, values) for name, values in parameters.items()}
     _require_same_number(len(starts), varied)
     in_lanes = _in_lanes(system, contact) and not varied.keys() & set(OF_SUPPORT)
     duration, tolerance = positive_number("duration", duration, "s"), checked_tolerance(tolerance)
@@ -98,11 +101,11 @@ def _processors() -> int:
 
 
 def _in_lanes(system: System, contact: Contact | None) -> bool:
-    """Return whether lanes know a system; raise ``ValueError`` if compiled code does not know its contact."""
+    """Return whether lanes support a system; raise ``ValueError`` if no compiled code supports its contact."""
     if not is_compilable(contact_of(system, contact)):
         raise ValueError(
-            f"contact = {contact}: ensembles know a Ring, Points, and an Annulus under uniform pressure that is not "
-            "very thin; simulate single motions"
+            f"contact = {contact}: ensembles support a Ring, Points, and an Annulus under uniform pressure that is "
+            "not very thin; simulate single motions"
         )
     few = (getattr(system, "contact_points", None) or 0) <= MOST_POINTS
     return system.linear_support and contact is None and few

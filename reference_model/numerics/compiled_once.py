@@ -140,7 +140,7 @@ def _locked(lock: Path) -> Iterator[None]:
 def _announce() -> None:
     """Report a long compilation, once per process; worker processes are silent."""
     if multiprocessing.parent_process() is None and _announced.acquire(blocking=False):
-        _say("Compiling for this machine, once (about a minute of processor time) ...")
+        _say("Compiling for this machine, once (up to a minute of processor time) ...")
 
 
 def _say(sentence: str) -> None:

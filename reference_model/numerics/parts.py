@@ -37,7 +37,7 @@ def inlined(function: Function) -> Function:
 
 
 def written_out(function: Function) -> Function:
-    """Register a part that is inserted into its caller, because LLVM optimises a called one again in all callers."""
+    """Register a function for inlining, because LLVM optimises called functions again in callers of their callers."""
     WRITTEN_OUT.append(part(function))
     return function
 

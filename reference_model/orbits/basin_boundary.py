@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from reference_model.numerics.continuation import Curve
 from reference_model.numerics.dividing_curves import dividing_curves
 from reference_model.orbits.release_map import JUMP, ROUGH, Release, ReleaseMap, StickSlipOrbit
-from reference_model.systems import FloatArray, checked_state, finite_numbers, require_whole
+from reference_model.systems import FloatArray, checked_state, finite_numbers, require_whole, shown
 
 COMPONENTS = ("x", "y", "vx", "vy")
 
@@ -119,7 +119,8 @@ def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -
     ``RuntimeError`` if something other than this stable set separates them.
     """
     separatrix = Separatrix.of(orbit)
-    return separatrix.point_between(*(checked_state(orbit.system, state) for state in (first, second)))
+    starts = (("first", first), ("second", second))
+    return separatrix.point_between(*(checked_state(orbit.system, state, name) for name, state in starts))
 
 
 def basin_boundary(
@@ -154,7 +155,7 @@ def basin_boundary(
     separatrix = Separatrix.of(orbit)
     places = _checked_places(components)
     low, high = _checked_ranges(components, ranges)
-    state = checked_state(orbit.system, others)
+    state = checked_state(orbit.system, others, "others")
     require_whole("cells", cells, least=2, most=1000)
 
     @functools.cache  # searches repeat their ends, and curves their points
@@ -179,9 +180,13 @@ def _require_on_boundary(point: FloatArray, miss: float) -> None:
 
 
 def _checked_places(components: tuple[str, str]) -> list[int]:
-    if len(components) != 2 or components[0] == components[1] or not set(components) <= set(COMPONENTS):
-        raise ValueError(f"components = {components!r}: they must be two of {', '.join(COMPONENTS)}")
-    return [COMPONENTS.index(name) for name in components]
+    try:
+        places = [COMPONENTS.index(name) for name in components]
+    except (TypeError, ValueError):
+        places = []
+    if len(places) != 2 or places[0] == places[1]:
+        raise ValueError(f"components = {shown(components)}: they must be two of {', '.join(COMPONENTS)}")
+    return places
 
 
 def _checked_ranges(

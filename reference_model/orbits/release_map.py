@@ -20,7 +20,7 @@ from scipy.optimize import newton
 
 from reference_model.orbits.shooting import REFERENCE, Orbit, ShootingProblem
 from reference_model.support import require_linear_support
-from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system, require_whole
+from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_kind, require_whole
 from reference_model.trajectory import Trajectory
 
 SEARCH_TIMES = (1.5, 16.0)
@@ -217,7 +217,7 @@ def stick_slip_orbits(
     to two other motions. There are no orbits without offset or friction, or on a disc at rest.
     Raises ``ValueError`` if an argument is invalid, or the support is not linear.
     """
-    require_system(pin, PinOnDisc)
+    require_kind("pin", pin, PinOnDisc)
     require_linear_support(pin)
     require_whole("samples", samples, least=1)
     releases = ReleaseMap(pin, checked_tolerance(tolerance))

@@ -15,7 +15,7 @@ from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import stick_slip_orbits
 from reference_model.steady.steady_states import self_centred_equilibria, why_no_equilibrium
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.systems import FloatArray, PinOnDisc, require_kind
 
 DIRECTIONS = 64
 """Number of directions tried first."""
@@ -63,6 +63,7 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     Raises ``ValueError`` if there is no equilibrium, no tried shock leads to the whirl, or no saddle orbit with a
     stick phase lies between the two; ``RuntimeError`` if the boundary is not in the stable set of that orbit.
     """
+    require_kind("pin", pin, PinOnDisc)
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
     if len(saddles) != 1:

@@ -95,7 +95,7 @@ class ShootingProblem:
     precision: float = 0.0
 
     def __post_init__(self) -> None:
-        require_callable("simulate", self.simulate)
+        require_callable("simulate", self.simulate, "system", "initial_state", "times", named=["tolerance"])
         checked_tolerance(self.tolerance)
         if not 0.0 <= finite_number("precision", self.precision) <= MOST_NOISE:
             raise ValueError(f"precision = {self.precision:g}: it must lie between 0 and {MOST_NOISE:g}")
@@ -323,9 +323,9 @@ def require_start(
         names = " or ".join("None" if kind is type(None) else kind.__name__ for kind in guesses)
         raise ValueError(f"guess = {guess!r}: it must be {names}")
     if isinstance(guess, Orbit | Whirl):
-        checked_state(system, guess.state)
+        checked_state(system, guess.state, "guess")
     elif isinstance(guess, Trajectory):
-        checked_state(system, guess.at_end)
+        checked_state(system, guess.at_end, "guess")
 
 
 def without_angle(state: FloatArray) -> FloatArray:

@@ -31,7 +31,7 @@ from reference_model.orbits.shooting import (
     without_angle,
 )
 from reference_model.steady.steady_states import Whirl, whirls, why_no_whirl
-from reference_model.systems import FloatArray, System, finite_number, require_whole
+from reference_model.systems import FloatArray, System, finite_number, require_kind, require_whole
 from reference_model.trajectory import Trajectory
 
 RECURRENCE = 0.05
@@ -175,6 +175,8 @@ def whirl_branch(
     method fails, down to ``until`` > 0 in m. The load may rise or fall, and stick phases may appear. Raises
     ``RuntimeError`` if even a step of ``step``/64 finds no orbit.
     """
+    require_kind("orbit", orbit, Orbit)
+    require_whole("samples", samples, least=1)
     if not finite_number("until", until) >= 0.0 < finite_number("step", step) < 1.0:
         raise ValueError(
             f"until = {until:g} m, step = {step:g}: until must be >= 0, and step between 0 and 1"

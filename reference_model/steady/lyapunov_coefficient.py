@@ -39,7 +39,7 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the modulation")
-    radius, _, _, _, speed, spin = checked_state(disc, state).tolist()
+    radius, _, _, _, speed, spin = checked_state(disc, state, "state").tolist()
     whirl = np.array([radius, 0.0, speed, disc.disc_speed - spin])
     slip, rim = abs(speed - disc.disc_speed * radius), disc.contact_radius * abs(whirl[3])
     # Fraction of the distance to where a point of the ring comes to rest, or the centre reaches the axis.

@@ -31,7 +31,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
     Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the state
     is invalid or exactly at the stop of the support; or if a contact is given for a pin.
     """
-    state = checked_state(system, state)
+    state = checked_state(system, state, "state")
     size = system.state_size // 2
     x, y = state[:2]
     vx, vy = state[size : size + 2]
@@ -192,7 +192,7 @@ def _state_on_whirl(system: System, state: ArrayLike | None) -> FloatArray:
             )
         radius = whirl_radius(system)
         return np.array([radius, 0.0, 0.0, whirl_frequency(system) * radius])
-    state = checked_state(system, state)
+    state = checked_state(system, state, "state")
     x, y, vx = state[0], state[1], state[system.state_size // 2]
     if x == 0.0 or y != 0.0 or vx != 0.0:
         raise ValueError(

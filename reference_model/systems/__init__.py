@@ -220,6 +220,8 @@ def real_numbers(name: str, values: Any) -> FloatArray:
         unit := getattr(values, "units", getattr(values, "unit", None))
     ):
         raise ValueError(f"{name} = {shown(values)}: it has the unit {unit}; pass plain numbers in SI units")
+    if isinstance(values, (bytearray, memoryview)):  # NumPy would take bytes as numbers
+        values = bytes(values)
     array = np.asarray(values, dtype=None if hasattr(values, "__array__") else object)
     kinds = {type(value) for value in array.flat} if array.dtype == object else {array.dtype.type}
     if not all(issubclass(kind, _NUMBERS) and not issubclass(kind, _NO_NUMBERS) for kind in kinds):
@@ -311,13 +313,14 @@ def require_callable(name: str, value: Any, *arguments: str, named: Collection[s
 def require_choice(name: str, value: Any, allowed: Collection[str]) -> None:
     """Raise ``ValueError`` unless ``value`` is one of the texts ``allowed``."""
     if not isinstance(value, str) or value not in allowed:
-        raise ValueError(f"{name} = {shown(value)}: it must be one of {', '.join(allowed)}")
+        raise ValueError(f"{name} = {shown(value)}: it must be one of {', '.join(map(str, allowed))}")
 
 
 def require_kind(name: str, value: Any, *kinds: type) -> None:
     """Raise ``ValueError`` unless ``value`` is an instance of one of ``kinds``."""
     if not isinstance(value, kinds):
-        raise ValueError(f"{name} = {shown(value)}: it must be a {' or a '.join(k.__name__ for k in kinds)}")
+        names = " or ".join(("an " if k.__name__[0] in "AEIOU" else "a ") + k.__name__ for k in kinds)
+        raise ValueError(f"{name} = {shown(value)}: it must be {names}")
 
 
 Place: TypeAlias = tuple[float, float, float]
@@ -355,25 +358,22 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
     return tuple(result)
 
 
-def require_system(system: System, *allowed: type[System]) -> None:
-    """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default either class."""
-    require_kind("system", system, *(allowed or (PinOnDisc, DiscOnDisc)))
+def require_system(system: System) -> None:
+    """Raise ``ValueError`` unless ``system`` is a pin or a disc."""
+    require_kind("system", system, PinOnDisc, DiscOnDisc)
 
 
-def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
-    """Return ``initial_state`` as an array, shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
+def checked_state(system: System, given: ArrayLike, name: str = "initial_state") -> FloatArray:
+    """Return a state as an array, shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
     require_system(system)
-    state = finite_numbers("initial_state", initial_state)
+    state = finite_numbers(name, given)
     if state.shape != (system.state_size,):
-        raise ValueError(
-            f"initial_state has shape {state.shape}: "
-            f"{type(system).__name__} takes {system.state_size} numbers"
-        )
+        kind, size = type(system).__name__, system.state_size
+        raise ValueError(f"{name} = {shown(given)}: {kind} takes {size} numbers, not shape {state.shape}")
     if np.any(abs(state) > MOST):
         i = int(np.argmax(abs(state)))
         raise ValueError(
-            f"initial_state[{i}] = {state[i]:g}: it must not be larger than {MOST:g}, "
-            "or powers of it overflow"
+            f"{name}[{i}] = {state[i]:g}: it must not be larger than {MOST:g}, or powers of it overflow"
         )
     return state
 

@@ -149,7 +149,7 @@ def test_invalid_argument_of_a_joint_is_refused_and_slip_is_that_of_bodies_on_a_
         ((JOINT, (0.0, 0.0), [0.0]), {"contact": Ring(0.1)}, "a joint has no contact law"),
         ((JOINT, (0.0, 0.0), [0.0]), {"compiled": 1}, "compiled = 1: it must be True or False"),
         ((JOINT, (0.0, 0.0), [0.0]), {"tolerance": 1.0}, "tolerance = 1: it must lie between"),
-        ((pin, (0.0, 0.0), [0.0]), {}, "initial_state has shape"),
+        ((pin, (0.0, 0.0), [0.0]), {}, "PinOnDisc takes 4 numbers, not shape"),
     ):
         with pytest.raises(ValueError, match=message):
             simulate(*arguments, **options)

@@ -186,9 +186,11 @@ def test_parameters_need_their_names_and_do_not_change():
 
 VALID = {"initial_state": [0.1, 0.0, 0.0, 0.0], "times": [0.0, 1.0], "tolerance": 1e-9}
 INVALID = [
-    *(("initial_state", value, f"initial_state has shape {shape}: PinOnDisc takes 4 numbers") for value, shape in (
+    *(("initial_state", value, f"initial_state = {value}: PinOnDisc takes 4 numbers, not shape {shape}")
+      for value, shape in (
         ([0.1] * 6, "(6,)"), (0.1, "()"), ([[0.1, 0.0, 0.0, 0.0]], "(1, 4)"),
     )),
+    ("initial_state", bytearray(4), "initial_state = b'\\x00\\x00\\x00\\x00': it must be a number"),
     ("initial_state", [0.1, 0.0, math.nan, 0.0], "initial_state[2] = nan: it must be finite"),
     ("initial_state", [0.1, 0.0, -1e60, 0.0], "initial_state[2] = -1e+60: it must not be larger than 1e+50"),
     *(("times", value, f"times has shape {shape}: it must be a list of at least one time") for value, shape in (

@@ -56,6 +56,8 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
                     store = SweepStore.create(files.url, plan, chunk or CHUNK)
                 run(store, executor, progress)
         store.pack()
+        if store.broken:
+            say(f"recomputed damaged parts of {store.path!r}: {'; '.join(store.broken)}", FINE)
         return finish(store, folder)
     except FileExistsError:
         return say(
@@ -76,8 +78,6 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     finally:
         if store is not None:
             store.tidy()
-            if store.broken:
-                say(f"recomputed damaged parts of {store.path!r}: {'; '.join(store.broken)}", FINE)
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from exudyn_models.solver.contacts import Coupling, motion_of, register
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import MeshLaw
-from reference_model.systems import FloatArray, require_choice, shown
+from reference_model.systems import FloatArray, require_choice, require_kind, shown
 
 FREEDOMS = ("1D", "Point2D", "Point", "RigidBody2D", "RigidBodyRotVecLG", "RigidBodyRxyz", "RigidBodyEP")
 """Kinds of nodes, by Exudyn's names. Up to three of their first coordinates can be freedoms."""
@@ -112,6 +112,7 @@ def freedoms_of(mbs: Any, **rotors: Any) -> list[Freedom | None]:
     Each is a node or object with one coordinate, or a marker of a coordinate of any node except the rotation of a
     body in space. Raises ``ValueError`` for others, and if two are equal.
     """
+    require_kind("mbs", mbs, exu.MainSystem)
     found: list[Freedom | None] = []
     for name, rotor in rotors.items():
         try:

@@ -6,7 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from reference_model.systems import finite_number, positive_number, shown
+from reference_model.systems import (
+    checked_parameter,
+    finite_number,
+    positive_number,
+    require_choice,
+    require_kind,
+    shown,
+)
 
 
 @dataclass(frozen=True)
@@ -47,15 +54,26 @@ def shift_sequence(
 
     """
     duration = positive_number("duration", duration, "s")
-    times = [finite_number("shifts", time) for time, _ in shifts]
+    require_kind("full_loads", full_loads, Mapping)
+    require_kind("gears", gears, Mapping)
+    try:
+        times = [finite_number("shifts", time) for time, _ in shifts]
+    except (TypeError, ValueError):
+        raise ValueError(f"shifts = {shown(shifts)}: it must be a list of (time in s, gear)") from None
     if any(later - time < duration for time, later in pairwise(times)):
         raise ValueError(
             f"shifts = {shown(shifts)}: each must begin at least {duration:g} s after the previous one"
         )
     used = [start, *(gear for _, gear in shifts)]
-    for known, names in ((gears, used), (full_loads, [name for gear in gears.values() for name in gear])):
-        if unknown := [name for name in names if name not in known]:
-            raise ValueError(f"{unknown[0]!r} is not one of {', '.join(map(repr, known))}")
+    require_choice("start", start, gears)
+    for gear in used[1:]:
+        require_choice("shifts", gear, gears)
+    for gear, closed in gears.items():
+        require_kind(f"gears[{gear!r}]", closed, Collection)
+        for name in closed:
+            require_choice(f"gears[{gear!r}]", name, full_loads)
+    for name, load in full_loads.items():
+        checked_parameter(f"full_loads[{name!r}]", load, "N", 0.0)
     edges = [edge for time in times for edge in (time, time + duration)]
 
     def load_of(name: str) -> Callable[[float], float]:

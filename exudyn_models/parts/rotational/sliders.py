@@ -78,8 +78,9 @@ def add_tyre(
     """Add a tyre with limited friction between a wheel and a vehicle; return the handle of ``add_slider_friction``.
 
     ``vehicle`` is the position of an ``ObjectMass1D``, ``radius`` > 0 that of the wheel in m. The tyre rolls without
-    slip until the force exceeds static friction. A coefficient that depends on ``slip_speed`` in m/s makes a curve of
-    slip. ``friction_coefficient``, ``normal_load`` and ``static_ratio`` are those of ``add_ring_friction``.
+    slip until the force exceeds static friction. If the coefficient depends on ``slip_speed`` in m/s, the force
+    follows this slip curve. ``friction_coefficient``, ``normal_load`` and ``static_ratio`` are those of
+    ``add_ring_friction``.
     """
     return add_slider_friction(
         mbs,

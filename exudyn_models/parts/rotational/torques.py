@@ -13,7 +13,9 @@ from exudyn_models.parts.rotational.couplings import Freedom, RotorCoupling, fre
 from exudyn_models.parts.rotational.sliders import add_slider_friction
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, items
 from reference_model.systems import (
+    LEAST,
     FloatArray,
+    checked_parameter,
     finite_number,
     finite_numbers,
     positive_number,
@@ -210,13 +212,13 @@ def add_road_load(
         Way per angle in m if the vehicle is a rotor, 1 for an ``ObjectMass1D``.
 
     """
-    mass, radius = positive_number("mass", mass, "kg"), positive_number("radius", radius, "m")
-    drag = finite_number("drag_area", drag_area) * finite_number("air_density", air_density) / 2.0
-    if drag < 0.0:
-        raise ValueError(
-            f"drag_area = {drag_area:g} m², air_density = {air_density:g} kg/m³: they must be >= 0"
-        )
+    mass, radius = checked_parameter("mass", mass, "kg", LEAST), positive_number("radius", radius, "m")
+    rolling = checked_parameter("rolling", rolling, "", 0.0)
+    drag = checked_parameter("drag_area", drag_area, "m²", 0.0) / 2.0
+    drag *= checked_parameter("air_density", air_density, "kg/m³", 0.0)
     weight, fixed = mass * GRAVITY, None if callable(slope) else finite_number("slope", slope)
+    if fixed is not None and abs(fixed) >= math.pi / 2.0:
+        raise ValueError(f"slope = {fixed:g} rad: it must lie between -pi/2 and pi/2")
 
     def angle_at(position: float) -> float:
         return slope(position) if callable(slope) else float(fixed or 0.0)

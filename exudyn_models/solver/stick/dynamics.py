@@ -104,7 +104,7 @@ class Dynamics:
     def violation(self) -> FloatArray:
         """Return the change of the velocities, shape (n,), that lets them satisfy all constraints, or zeros.
 
-        Bodies change their velocities as by an impact of these constraints.
+        Bodies change their velocities as in an impact on these constraints.
         """
         if not self.gradients.any():
             return np.zeros(self._size)

@@ -30,7 +30,7 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 SETTLED = 1e-10
-"""Largest relative change of settled forces."""
+"""Relative change of the forces below which they count as settled."""
 
 ITERATIONS = 200
 """Largest number of iterations for loads that depend on constraint forces."""

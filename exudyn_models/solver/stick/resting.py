@@ -18,7 +18,7 @@ from exudyn_models.solver.stick.sticking_contacts import PlanarContact, Sticking
 from reference_model.systems import FloatArray
 
 UNDETERMINED = 1e-9
-"""Smallest relative effect of forces on shares of capacities."""
+"""Relative effect of an undetermined force on the capacity shares below which it is ignored."""
 
 
 @dataclass(eq=False)

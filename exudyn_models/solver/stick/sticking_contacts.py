@@ -299,8 +299,8 @@ class PlanarContact(StickingContact):
 def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
     """Return the contacts of a model that stick exactly in a run between two times (s), and after them the springs.
 
-    Joints at the initial values keep the centre of a contact on one axis, and no motion that they prescribe moves it.
-    Raises ``ValueError`` if a contact in the plane accompanies a gear with losses or a one-way clutch.
+    A contact counts as on one axis if, at the initial values, joints keep its centre there and no prescribed motion
+    moves it. Raises ``ValueError`` if a contact in the plane accompanies a gear with losses or a one-way clutch.
     """
     contacts = [
         StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)))

@@ -91,7 +91,7 @@ def shares(slip: float, spin: float, outer: float, inner: float, load: float) ->
 
 
 def no_shares(slip: float, spin: float, law: Law) -> tuple[float, float]:
-    """Return no force, because compiled code does not know laws of the user."""
+    """Return no force, because compiled code does not support laws of the user."""
     return math.nan, math.nan
 
 

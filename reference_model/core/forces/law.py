@@ -10,7 +10,7 @@ CENTRE = -1
 """Index of the centre in place of a contact point."""
 
 OWN = -1.0
-"""``Law.load`` of a friction law that only interpreted runs know."""
+"""``Law.load`` of a friction law that only interpreted runs support."""
 
 WIDTH = 7
 """Number of values per contact point."""

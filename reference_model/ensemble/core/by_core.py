@@ -1,4 +1,4 @@
-"""Steps of a lane by :mod:`reference_model.core`, which knows rest, release, pivots and stiff slip.
+"""Steps of a lane by :mod:`reference_model.core`, which handles rest, release, pivots and stiff slip.
 
 The compiled core is called, not compiled again, so all kernels share it.
 """

@@ -1,4 +1,4 @@
-"""Ensembles of discs, and of bodies that only the core knows."""
+"""Ensembles of discs, and of bodies that only the core supports."""
 
 import math
 from dataclasses import replace
@@ -47,7 +47,7 @@ def simulate_discs(
 def simulate_any(
     system: System, contact: Contact | None, task: Task, tolerance: float, early_end: bool, threads: int
 ) -> Results:
-    """Simulate bodies on any support, with any contact that the core knows, without lanes."""
+    """Simulate bodies on any support, with any contact that the core supports, without lanes."""
     law = contact_of(system, contact)
     points = np.zeros(0)
     if isinstance(law, Points):

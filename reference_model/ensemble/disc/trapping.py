@@ -1,8 +1,8 @@
 """Trapping regions of a disc's equilibria and whirls: a motion that enters one is decided.
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
-fan of directions shows how far out it falls along the true motion. Motion that crosses a sphere of V and every
-smaller one inwards goes to the centre. A disc on points oscillates, so only spheres down to INNER of the size count.
+fan of directions shows how far out it falls along the true motion. If motions cross a sphere of V and every smaller
+one inwards, they tend to the centre. A disc on points oscillates, so only spheres down to INNER of the size count.
 """
 
 import math

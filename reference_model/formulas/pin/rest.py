@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.support import Support, require_linear_support
-from reference_model.systems import FloatArray, PinOnDisc, real_numbers, require_system
+from reference_model.systems import FloatArray, PinOnDisc, real_numbers, require_kind
 
 
 def turning_direction(pin: PinOnDisc) -> float:
@@ -161,7 +161,7 @@ def sticking_radius(pin: PinOnDisc) -> float:
     It is ``inf`` if an undamped pin is carried round at its natural frequency. Raises ``ValueError`` if μN <= C·|X0|,
     where friction cannot hold the pin even on the axis, or if the support is not linear.
     """
-    require_system(pin, PinOnDisc)
+    require_kind("pin", pin, PinOnDisc)
     spare = sticking_margin(pin, 0.0)
     if spare <= 0.0:
         raise ValueError(

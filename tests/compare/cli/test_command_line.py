@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 
@@ -14,7 +15,7 @@ import fake_studies
 import matplotlib
 import numpy as np
 import pytest
-from processes import REAL, environment
+from processes import REAL, environment, interruptible
 
 from compare.claims.errata import ERRATA, TEXT
 from compare.claims.parameters import FIG5, FIG11
@@ -228,25 +229,62 @@ def test_a_process_that_is_interrupted_while_it_loads_says_so(tmp_path):
     assert (done.returncode, done.stderr) == (130, "Interrupted.\n")
 
 
+SOON = 30.0
+"""Time limit in s; all commands would take a minute."""
+
 LOSING = """
-import signal, time, weakref
-from compare.cli import app
+import hashlib, os, signal, tempfile, threading, time, weakref
+from pathlib import Path
+from compare.cli import app, main
+from compare.output.text_files import locked, replacing
+from compare.run.interrupts import postponed
+
+def callback():
+    thing = set()
+    lost = weakref.ref(thing, lambda _: signal.raise_signal(NUMBER))
+    del thing
+
+def module():
+    try:
+        signal.raise_signal(NUMBER)
+    except:
+        pass
+
+def compiled():
+    threading.Timer(0.1, os.kill, (os.getpid(), NUMBER)).start()
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 1_000_000_000)
+
+def start_of_a_process():
+    with postponed():
+        signal.raise_signal(NUMBER)
+        time.sleep(2.0)
 
 def command(*arguments, **options):
-    thing = set()
-    lost = weakref.ref(thing, lambda _: signal.raise_signal(signal.SIGTERM))
-    del thing
-    time.sleep(60.0)
+    with tempfile.TemporaryDirectory(dir="."), locked(Path(".")), replacing(Path("file")):
+        CODE()
+        time.sleep(60.0)
 
 app.app = command
-app.main([])
+main([])
 """
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
-def test_an_interrupt_that_a_callback_loses_is_repeated():
-    done = subprocess.run([REAL[0], "-c", LOSING], env=environment(), capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (130, "Interrupted.\n")
+@pytest.mark.parametrize("number", ["signal.SIGINT", "signal.SIGTERM"])
+@pytest.mark.parametrize("code", ["callback", "module", "compiled", "start_of_a_process"])
+def test_an_interrupt_ends_a_command_in_code_that_loses_or_delays_it(code, number, tmp_path):
+    text = LOSING.replace("CODE", code).replace("NUMBER", number)
+    begin = time.monotonic()
+    done = subprocess.run(
+        [REAL[0], "-c", text],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        preexec_fn=interruptible,
+    )
+    assert (done.returncode, done.stderr, list(tmp_path.iterdir())) == (130, "Interrupted.\n", [])
+    assert time.monotonic() - begin < SOON
 
 
 def test_a_process_ends_normally_without_a_reader():

@@ -57,8 +57,8 @@ def dask_setup(worker):
 
 
 if __name__ == "__main__":
-    from compare.cli import app as cli
+    from compare.cli import main
 
     signal.signal(signal.SIGINT, signal.default_int_handler)  # it is ignored in background processes
     signalling(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))
-    cli.main(sys.argv[4:])
+    main(sys.argv[4:])

@@ -198,7 +198,9 @@ def test_objects_without_potential_energy():
     with pytest.raises(
         ValueError, match=r"spring_energy\(99\): it must be the ObjectIndex of an object of this"
     ):
-        add_energy_balance(mbs, **balance, stored=[spring_energy(99)])
+        add_energy_balance(mbs, **balance, stored=[spring_energy(exu.ObjectIndex(99))])
+    with pytest.raises(ValueError, match="connector = 99: it must be the ObjectIndex of a spring"):
+        spring_energy(99)
     add_energy_balance(mbs, **balance, stored=[spring_energy(right)])
 
 

@@ -119,3 +119,12 @@ def test_a_pin_holds_no_moment_and_a_load_needs_a_direction():
     for law in (Pin(), FEET):
         with pytest.raises(ValueError, match="force and moment are 0: they must have a direction"):
             largest_wrench(law, 0j, 0.0)
+        for invalid, message in ((True, "= True: it must be a number"), (math.nan, "nan: it must be finite")):
+            for call in (largest_wrench, wrench_of_slip):
+                with pytest.raises(ValueError, match=message):
+                    call(law, invalid, 1.0)
+                with pytest.raises(ValueError, match=message):
+                    call(law, 1.0, invalid)
+    for call in (largest_wrench, wrench_of_slip):
+        with pytest.raises(ValueError, match="contact = 1: it must be an isotropic law"):
+            call(1, 1j, 0.0)

@@ -114,6 +114,8 @@ def push(normal=1j, friction=0.1):
     [
         (lambda: push(normal=0j), "normal = 0: it must point into the body"),
         (lambda: push(normal=1j * math.inf), "normal = .*: it must be finite"),
+        (lambda: push(normal="1j"), "normal = '1j': it must be a number"),
+        (lambda: Pushing([], 0j, 1j, 0.1), r"contact = \[\]: it must be a Points"),
         (lambda: push(friction=-0.1), "friction_coefficient = -0.1: it must be >= 0"),
         (lambda: push().pose(0.01j, 0.02j), "start = 0.01j: the hand must start outside"),
         (lambda: push().pose(0j, 0.02j, 0), "steps = 0"),

@@ -13,7 +13,7 @@ START = [0.1, 0.0, 0.0, 0.0]
     ("system", "states", "options", "message"),
     [
         ("pin", START, {}, r"system = 'pin': it must be a PinOnDisc or a DiscOnDisc"),
-        (FIG9, [0.1] * 6, {"contact": ThreeTermRing(0.1)}, r"ensembles know a Ring, Points, and an Annulus"),
+        (FIG9, [0.1] * 6, {"contact": ThreeTermRing(0.1)}, r"ensembles support a Ring, Points, and an Annulus"),
         (FIG5, START, {"contact": Ring(0.1)}, r"a pin has point contact"),
         (FIG5, [0.1, 0.0], {}, r"initial_states has shape \(1, 2\): PinOnDisc takes 4 numbers"),
         (FIG5, np.zeros((0, 4)), {}, r"initial_states has shape \(0, 4\)"),
@@ -22,6 +22,7 @@ START = [0.1, 0.0, 0.0, 0.0]
         (FIG5, START, {"duration": 0.0}, r"duration = 0 s: it must be > 0"),
         (FIG5, START, {"tolerance": 1.0}, r"tolerance = 1: it must lie between"),
         (FIG5, START, {"threads": 0}, r"threads = 0: it must be a whole number >= 1 and <= 1024"),
+        (FIG5, START, {"parameters": ""}, r"parameters = '': it must be a Mapping"),
         (FIG5, START, {"parameters": {"ofset": [0.1]}}, r"'ofset' cannot vary .* choose from mass, stiffness"),
         (FIG5, START, {"parameters": {"hardening": [-0.1]}}, r"hardening = -0.1 N/m³: it must be >= 0"),
         (FIG5, START, {"parameters": {"offset": 0.1}}, r"offset has shape \(\): it must be a list"),
@@ -40,7 +41,7 @@ def test_invalid_ensemble_is_refused(system, states, options, message):
     ("system", "options", "message"),
     [
         (FIG9, {"contact": Pin()}, "a disc with point contact never comes to rest"),
-        (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled code knows a Ring, Points, and an Annulus"),
+        (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled code supports a Ring, Points, and an Annulus"),
         (FIG9, {"contact": Annulus(0.1, 0.2, pressure=lambda r: 1.0)}, "an Annulus under uniform pressure"),
         (FIG9, {"contact": Annulus(0.19999, 0.2)}, "that is not very thin; omit compiled=True"),
         (FIG5, {"contact": Ring(0.1)}, "a pin has point contact"),

@@ -8,9 +8,13 @@ import pytest
 from compare.claims.parameters import FIG5
 from reference_model import (
     basin_boundary,
+    onset_load,
     self_centred_equilibria,
+    smallest_load_with_whirl,
     smallest_shock,
     stick_slip_orbits,
+    sticking_radius,
+    whirl_branch,
 )
 from reference_model.orbits.shock import by_bisection
 
@@ -36,6 +40,14 @@ def test_smallest_shock_is_the_nearest_point_of_the_boundary(shock):
 
 
 def test_pin_without_a_smallest_shock_is_refused(monkeypatch):
+    for call in (smallest_shock, stick_slip_orbits, sticking_radius):
+        with pytest.raises(ValueError, match="pin = 1: it must be a PinOnDisc"):
+            call(1)
+    for call in (onset_load, smallest_load_with_whirl):
+        with pytest.raises(ValueError, match="disc = 1: it must be a DiscOnDisc"):
+            call(1)
+    with pytest.raises(ValueError, match="orbit = 1: it must be an Orbit"):
+        next(whirl_branch(1, 0.5))
     with pytest.raises(ValueError, match="the self-centred equilibrium exists only"):
         smallest_shock(replace(FIG5, offset=0.0))
     with pytest.raises(ValueError, match="only linear supports are covered"):

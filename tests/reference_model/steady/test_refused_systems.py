@@ -81,7 +81,7 @@ ORBITS = [
         (whirl_orbit, {"system": FIG11, name: value}, message)
         for name, value, message in (
             ("guess", "near", "guess = 'near': it must be Orbit or Whirl or None"),
-            ("guess", whirls(PIN)[0], r"shape \(4,\): DiscOnDisc takes 6 numbers"),
+            ("guess", whirls(PIN)[0], r"DiscOnDisc takes 6 numbers, not shape \(4,\)"),
             ("samples", 2.5, r"samples = 2\.5: it must be a whole number >= 1"),
             ("samples", 10**9, "samples = 1000000000: it must be a whole number >= 1 and <= 1000000"),
             ("at_crossing", math.nan, "at_crossing = nan: it must be finite"),
@@ -114,7 +114,7 @@ ORBITS = [
             ("ranges", ((0.0, 0.1), (0.2, 0.2)), r"range of vx = 0\.2 to 0\.2: it must increase"),
             ("ranges", ((0.0, math.nan), (0.2, 0.3)), r"ranges\[0, 1\] = nan: it must be finite"),
             ("ranges", ((0.0, 0.1),), "two pairs of numbers"),
-            ("others", (0.0, 0.0), "initial_state has shape"),
+            ("others", (0.0, 0.0), r"others = \(0\.0, 0\.0\): PinOnDisc takes 4 numbers"),
             ("cells", 1, "cells = 1: it must be a whole number >= 2"),
         )
     ),

@@ -39,7 +39,8 @@ ONSET_NOTE = (
 
 
 @STUDY.claim(
-    "The centred disc becomes unstable at ω = k(1 + β/D), by Exudyn's linearisation of the whole drivetrain",
+    "According to Exudyn's linearisation of the whole drivetrain, the centred disc becomes unstable at "
+    "ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
     note=ONSET_NOTE,
@@ -67,7 +68,8 @@ def loses_stability(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "By the reference's eigenvalues of the reduced disc, the centred disc becomes unstable at ω = k(1 + β/D)",
+    "According to the reference's eigenvalues of the reduced disc, the centred disc becomes unstable at "
+    "ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
     note=ONSET_NOTE,

@@ -33,7 +33,7 @@ FINER = 24
 
 CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
 TORQUE, SLIPPING = 80.0, 12.0
-"""Torque in N m and slip in rad/s for each onset, and on the bench, similar to the run-up."""
+"""Torques in N m and slips in rad/s of the onsets and of the bench; they resemble the run-up."""
 
 BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 """Speeds in rpm below and above the onset."""

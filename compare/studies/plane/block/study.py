@@ -340,7 +340,7 @@ def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measur
 
 
 @STUDY.claim(
-    "A block thrown across a pull equal to friction slows down to half its speed, by the closed form",
+    "A block thrown at right angles to a pull equal to friction slows to half its speed as in the closed form",
     unit="m/s",
     resolution=1e-5,
     note="Velocity along and across the pull, v₀(1 − w)/2 and v₀√w with w + ln w = 1 − 4μN·t/mv₀; the friction turns "

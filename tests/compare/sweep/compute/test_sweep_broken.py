@@ -164,6 +164,40 @@ def test_a_piece_in_another_place_is_damage(one, other, copied, whole, capsys):
     assert_same(content(copied / STORE), whole[1])
 
 
+def without(packed, names, missing):
+    """Replace an archive by one that lacks a member."""
+    with ZipFile(packed) as archive:
+        kept = {name: archive.read(name) for name in names if name != missing}
+    with ZipFile(packed, "w") as archive:
+        for name, data in kept.items():
+            archive.writestr(name, data)
+
+
+def test_a_disk_that_fails_during_a_repair_costs_one_sentence_and_not_the_archive(
+    copied, monkeypatch, capsys
+):
+    monkeypatch.setattr(store, "SMALL", 10)
+    assert resumed(copied) == 0
+    packed = Path(f"{copied / STORE}.zip")
+    with ZipFile(packed) as archive:
+        names = archive.namelist()
+    without(packed, names, "round-0/end/c/1")
+    before = packed.read_bytes()
+    capsys.readouterr()
+
+    def failing(*arguments, **options):
+        raise OSError(errno.EIO, "Input/output error")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("compare.sweep.files.replacing", failing)
+        patch.setattr(os, "unlink", failing)
+        patch.setattr(os, "rmdir", failing)
+        assert resumed(copied) == 2
+    err = capsys.readouterr().err
+    assert (err.count("\n"), err.count(": Input/output error. Results written so far remain valid")) == (1, 1)
+    assert packed.read_bytes() == before
+
+
 def test_a_missing_member_of_an_archive_is_replaced(copied, whole, monkeypatch, capsys):
     monkeypatch.setattr(store, "SMALL", 10)
     assert resumed(copied) == 0
@@ -171,11 +205,7 @@ def test_a_missing_member_of_an_archive_is_replaced(copied, whole, monkeypatch, 
     with ZipFile(packed) as archive:
         names = archive.namelist()
     for missing in ("round-0/end/c/1", "round-0/end/seals/0", "check/zarr.json", "curves/curve/c/0"):
-        with ZipFile(packed) as archive:
-            kept = {name: archive.read(name) for name in names if name != missing}
-        with ZipFile(packed, "w") as archive:
-            for name, data in kept.items():
-                archive.writestr(name, data)
+        without(packed, names, missing)
         capsys.readouterr()
         assert resumed(copied) == 0
         assert capsys.readouterr().err.startswith("recomputed damaged parts")

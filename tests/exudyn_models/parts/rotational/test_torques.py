@@ -169,12 +169,25 @@ def test_wrong_tables_rotors_and_shifts_are_refused():
         add_torque_converter(mbs, one, other, table=[[0.0, 1.0, 1.0], [2.0, 1.0, 1.0]])
     with pytest.raises(ValueError, match="rotor = None: a torque must act on a rotor"):
         add_torque(mbs, None, lambda time, angle, speed: 0.0)
-    with pytest.raises(ValueError, match="drag_area = -1 m²"):
-        add_road_load(mbs, one, mass=1.0, drag_area=-1.0)
-    gears = {"1": ["a"], "2": ["b"]}
     for more, words in (
-        ({"start": "3"}, "'3' is not one of '1', '2'"),
-        ({"start": "1", "shifts": [(0.0, "2"), (0.1, "1")]}, "each must begin at least 0.5 s after"),
+        ({"drag_area": -1.0, "air_density": -1.0}, "drag_area = -1 m²"),
+        ({"mass": 1e308}, "mass = 1e\\+308 kg: its size must be between"),
+        ({"rolling": -0.1}, r"rolling = -0\.1 : it must be >= 0"),
+        ({"slope": 2.0}, "slope = 2 rad: it must lie between"),
     ):
         with pytest.raises(ValueError, match=words):
-            shift_sequence({"a": 1.0, "b": 1.0}, gears, **{"shifts": [], "duration": 0.5} | more)
+            add_road_load(mbs, one, **{"mass": 1.0} | more)
+    with pytest.raises(ValueError, match="mbs = True: it must be a MainSystem"):
+        add_road_load(True, one, mass=1.0)
+    gears = {"1": ["a"], "2": ["b"]}
+    for more, words in (
+        ({"start": "3"}, "start = '3': it must be one of 1, 2"),
+        ({"start": "1", "gears": ["1"]}, r"gears = \['1'\]: it must be a Mapping"),
+        ({"start": "1", "gears": {"1": ["c"]}}, r"gears\['1'\] = 'c': it must be one of a, b"),
+        ({"start": "1", "full_loads": {"a": -1.0, "b": 1.0}}, r"full_loads\['a'\] = -1 N: it must be >= 0"),
+        ({"start": "1", "shifts": [1.0]}, r"shifts = \[1.0\]: it must be a list of"),
+        ({"start": "1", "shifts": [(0.0, "2"), (0.1, "1")]}, "each must begin at least 0.5 s after"),
+    ):
+        usual = {"full_loads": {"a": 1.0, "b": 1.0}, "gears": gears, "shifts": [], "duration": 0.5}
+        with pytest.raises(ValueError, match=words):
+            shift_sequence(**usual | more)
