@@ -13,7 +13,7 @@ from dataclasses import replace
 import Box2D
 import numpy as np
 
-from compare.engines.live.setting import Setting, TopDown, inertia_of
+from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS, RECOMMENDED = 50, (8, 3)
@@ -70,12 +70,41 @@ class _World(TopDown):
             self.turns += turn
 
 
+class _Joint(JointModel):
+    """A revolute joint with a motor of speed 0, whose torque limit is the friction moment, as in the manual."""
+
+    engine = "Box2D"
+    method = f"Box2D {Box2D.__version__}, semi-implicit Euler, joint motor"
+
+    def build(self, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
+        self.iterations = RECOMMENDED if shipped else (ITERATIONS, 0)
+        self.world = Box2D.b2World(gravity=(0.0, 0.0), doSleep=shipped)
+        self.body = self.world.CreateDynamicBody(angularVelocity=self.spin)
+        self.body.massData = Box2D.b2MassData(mass=1.0, I=self.joint.inertia, center=(0.0, 0.0))
+        self.world.CreateRevoluteJoint(
+            bodyA=self.world.CreateStaticBody(),
+            bodyB=self.body,
+            localAnchorA=(0.0, 0.0),
+            localAnchorB=(0.0, 0.0),
+            enableMotor=True,
+            motorSpeed=0.0,
+            maxMotorTorque=self.joint.friction_moment,
+        )
+        self.first = self.angle
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        self.body.ApplyTorque(torque, True)
+        self.world.Step(h, *self.iterations)
+        return self.first + self.body.angle, self.body.angularVelocity
+
+
 friction_joint = Setting(
     "friction joint",
     "by friction joints, in single precision, with steps of order 1 until accumulated rounding dominates.",
     _World,
     finest=2e-3,
     precision=1e-6,
+    joint=_Joint,
 )
 shipped = replace(
     friction_joint,

@@ -20,6 +20,7 @@ import numpy as np
 import pybullet
 
 from compare.engines.live.setting import (
+    JointModel,
     Model,
     Setting,
     inertia_of,
@@ -48,16 +49,8 @@ class _World(Model):
         self.joints = range(self.half)
         self.load = system.friction_force / len(self.arms)
         self.native = friction != "our force"
-        self.client = pybullet.connect(pybullet.DIRECT)
         self.shipped = friction == "as shipped"
-        if not self.shipped:
-            pybullet.setPhysicsEngineParameter(
-                numSolverIterations=ITERATIONS,
-                solverResidualThreshold=0.0,
-                contactSlop=0.0,
-                enableConeFriction=int(friction == "cone"),
-                physicsClientId=self.client,
-            )
+        self._connect(friction)
         # The feet take half of the largest mass that mass and inertia allow.
         feet = self.arms if self.native else []
         mass, inertia = system.mass, inertia_of(system)
@@ -80,6 +73,17 @@ class _World(Model):
             plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
             plate = self._body(0.0, [(mass, 1e12 * inertia)], [plane], [0j], [0], ["turn"])
             pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
+
+    def _connect(self, friction: str) -> None:
+        self.client = pybullet.connect(pybullet.DIRECT)
+        if not self.shipped:
+            pybullet.setPhysicsEngineParameter(
+                numSolverIterations=ITERATIONS,
+                solverResidualThreshold=0.0,
+                contactSlop=0.0,
+                enableConeFriction=int(friction == "cone"),
+                physicsClientId=self.client,
+            )
 
     def _body(self, height: float, links: Any, shapes: Any, places: Any, parents: Any, axes: Any) -> int:
         """Return an undamped multibody without motors; ``links`` are pairs of mass and inertia."""
@@ -146,7 +150,35 @@ class _World(Model):
         return forces
 
 
-cone = Setting("cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"})
+class _Joint(JointModel, _World):
+    """A revolute joint with a velocity motor, whose force limit is the friction moment."""
+
+    method = f"PyBullet {version('pybullet')}, semi-implicit Euler, joint motor"
+
+    def build(self, state: FloatArray, tolerance: float, *, friction: str) -> None:
+        self.shipped, self.h = friction == "as shipped", 0.0
+        self._connect(friction)
+        inertia = self.joint.inertia
+        self.body = self._body(0.0, [(inertia, inertia)], [-1], [0j], [0], ["turn"])
+        pybullet.resetJointState(self.body, 0, *state.tolist(), physicsClientId=self.client)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        body, client = self.body, self.client
+        if h != self.h:
+            pybullet.setPhysicsEngineParameter(fixedTimeStep=h, physicsClientId=client)
+            motor, self.h = pybullet.VELOCITY_CONTROL, h
+            pybullet.setJointMotorControl2(
+                body, 0, motor, targetVelocity=0.0, force=self.joint.friction_moment, physicsClientId=client
+            )
+        pybullet.setJointMotorControl2(body, 0, pybullet.TORQUE_CONTROL, force=torque, physicsClientId=client)
+        pybullet.stepSimulation(client)
+        angle, spin, *_ = pybullet.getJointState(body, 0, client)
+        return angle, spin
+
+
+cone = Setting(
+    "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, joint=_Joint
+)
 box = Setting(
     "box",
     "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
@@ -158,6 +190,7 @@ shipped = Setting(
     "with all its defaults, which include a damping of the body of 0.04 and a joint speed limit of 100.",
     _World,
     {"friction": "as shipped"},
+    joint=_Joint,
 )
 our_force = Setting(
     "our force",

@@ -34,7 +34,15 @@ from pydrake.multibody.tree import (
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, our_friction, rate
+from compare.engines.live.setting import (
+    JointModel,
+    Model,
+    Setting,
+    contact_arms,
+    inertia_of,
+    our_friction,
+    rate,
+)
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import SimulationError
 
@@ -42,6 +50,9 @@ DEPTH = 1e3
 """Depth of the spheres in the plate in m. SAP lets sliding bodies rise by μ·h times the slip (μ = 1): far less."""
 
 RADIUS = 1e-3  # radius of the spheres in m
+STIFF = 1e9
+"""Gain of a motor in 1/s, times the inertia."""
+
 PLATE = 1e5  # edge length of the plate in m
 
 
@@ -90,7 +101,7 @@ class _Plant:
             self._touch(body, master)
         if scheme.driven and step:
             motor = self.plant.AddJointActuator("motor", self.master)
-            motor.set_controller_gains(PdControllerGains(p=0.0, d=1e9 * inertia * fastest))
+            motor.set_controller_gains(PdControllerGains(p=0.0, d=STIFF * inertia * fastest))
         self.plant.Finalize()
         steady = np.zeros(self.plant.num_velocities())
         steady[self.joint.velocity_start() + 2] = shaft * shaft_speed
@@ -201,6 +212,44 @@ class _Motion(Model):
         return steps, steps
 
 
+class _Joint(JointModel):
+    """A joint with a motor of speed 0, whose effort limit is the friction moment, because joints have no friction."""
+
+    engine = "Drake"
+
+    def build(self, state: FloatArray, tolerance: float, *, scheme: _Scheme) -> None:
+        self.solver, self.h, self.method = scheme.solver, 0.0, f"Drake {scheme.solver}, motor"
+
+    def _start(self, h: float) -> None:
+        """Build a plant that starts here, because Drake fixes the step of a plant."""
+        builder, inertia, self.h, self.steps = DiagramBuilder(), self.joint.inertia, h, 0
+        config = MultibodyPlantConfig(time_step=h, use_sampled_output_ports=False)
+        config.discrete_contact_approximation, config.sap_near_rigid_threshold = self.solver, 0.0
+        plant, _ = AddMultibodyPlant(config, builder)
+        body = plant.AddRigidBody("body", SpatialInertia(inertia, np.zeros(3), UnitInertia(1.0, 1.0, 1.0)))
+        plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
+        axle = RevoluteJoint("axle", plant.world_frame(), body.body_frame(), (0.0, 0.0, 1.0))
+        self.axle = plant.AddJoint(axle)
+        motor = plant.AddJointActuator("motor", self.axle, self.joint.friction_moment)
+        motor.set_controller_gains(PdControllerGains(p=0.0, d=STIFF * inertia))
+        plant.Finalize()
+        self.simulator = Simulator(builder.Build())
+        self.context = plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
+        plant.get_desired_state_input_port(motor.model_instance()).FixValue(self.context, np.zeros(2))
+        self.torque = plant.get_applied_generalized_force_input_port()
+        self.axle.set_angle(self.context, self.angle)
+        self.axle.set_angular_rate(self.context, self.spin)
+        self.simulator.Initialize()
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        if h != self.h:
+            self._start(h)
+        self.steps += 1
+        self.torque.FixValue(self.context, [torque])
+        self.simulator.AdvanceTo((self.steps - 0.5) * h)  # completes all steps, whatever the rounding
+        return self.axle.get_angle(self.context), self.axle.get_angular_rate(self.context)
+
+
 tamsi = Setting(
     "TAMSI",
     "with TAMSI and steps of order 1. Drake plans to remove it.",
@@ -213,6 +262,7 @@ sap = Setting(
     _Motion,
     {"scheme": _Scheme("sap", driven=True)},
     finest=2e-3,
+    joint=_Joint,
 )
 lagged = Setting(
     "lagged",
@@ -221,6 +271,7 @@ lagged = Setting(
     _Motion,
     {"scheme": _Scheme("lagged", driven=True)},
     finest=2e-3,
+    joint=_Joint,
 )
 cenic = Setting(
     "cenic",

@@ -69,7 +69,7 @@ def installed_engine(name: str, setting: str) -> Engine:
     return Engine(
         f"{name}:{setting}" if setting != known.settings[0] else name,
         ByName(module, function),
-        kinds=simulate.model.kinds,
+        kinds=simulate.kinds,
         nonlinear=not simulate.model.linear,
         phases=False,
         precision=simulate.precision,

@@ -30,7 +30,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from compare.engines.live.setting import Model, Setting, inertia_of, mobility, our_friction
+from compare.engines.live.setting import JointModel, Model, Setting, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
@@ -112,6 +112,34 @@ class _Model(Model):
         data.qfrc_passive += our_friction(self.system, self.arms, state, self.epsilon)
 
 
+class _Joint(JointModel):
+    """A hinge with ``frictionloss``."""
+
+    engine = "MuJoCo"
+    method = f"MuJoCo {mujoco.__version__}, Euler, frictionloss"
+
+    def build(self, state: FloatArray, tolerance: float, *, contact: _Contact, **_: Any) -> None:
+        joint, self.contact = self.joint, contact
+        rigid = 'solimpfriction="0.9999 0.9999 1 0.5 2"' if contact.friction_rate else ""
+        flag = '<flag refsafe="disable"/>' if contact.friction_rate else ""
+        self.model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+            <option gravity="0 0 0" {contact.option}>{flag}</option>
+            <worldbody><body>
+                <inertial pos="0 0 0" mass="1" diaginertia="{3 * f" {joint.inertia!r}"}"/>
+                <joint type="hinge" axis="0 0 1" frictionloss="{joint.friction_moment!r}" {rigid}/>
+            </body></worldbody></mujoco>""")
+        self.data = mujoco.MjData(self.model)
+        (self.data.qpos[0],), (self.data.qvel[0],) = np.split(state, 2)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        self.model.opt.timestep = h
+        if self.contact.friction_rate:
+            self.model.dof_solref[0] = 0.0, -1.0 / h
+        self.data.qfrc_applied[0] = torque
+        mujoco.mj_step(self.model, self.data)
+        return float(self.data.qpos[0]), float(self.data.qvel[0])
+
+
 def _xml(system: System, arms: list[complex], option: str, contact: _Contact | None, turns: bool) -> str:
     """Return the model, with joints in this order: pin or disc, feet, plate."""
     disc = isinstance(system, DiscOnDisc)
@@ -172,6 +200,7 @@ ellipse = Setting(
     "with the elliptic cone and semi-implicit Euler steps, of order 1 in slip and of order 2 in stick.",
     _Model,
     {"contact": _Contact.rigid("elliptic", 2.0, 10), "friction": "elliptic cone"},
+    joint=_Joint,
 )
 ellipse_rk4 = Setting(
     "elliptic cone, RK4",
@@ -191,6 +220,7 @@ shipped = Setting(
     "with all its defaults: the pyramid, and soft contact that creeps under any load at any step.",
     _Model,
     {"contact": _Contact(), "friction": "as shipped"},
+    joint=_Joint,
 )
 our_force = Setting(
     "our force",
