@@ -1,7 +1,7 @@
 """Box2D as an engine, by pybox2d, with its friction joints for top-down scenes.
 
 Written for Box2D 2.3, in single precision. See ``TopDown`` in ``setting`` for the bodies. A friction joint bounds the
-length of its impulse, a cone. Its torque limit is 0, because contact is at points.
+length of its impulse, a cone. Its torque limit is 0 for contact at points.
 
 - Bodies must not sleep. Several points need 50 velocity iterations.
 - Box2D's angles grow without bound and lose digits in long spins, so the adapter counts whole turns.
@@ -39,7 +39,8 @@ class _World(TopDown):
         self.body.massData = Box2D.b2MassData(mass=system.mass, I=inertia_of(system), center=(0.0, 0.0))
         if disc:
             self.body.angle, self.body.angularVelocity = float(places[2]), float(speeds[2])
-        self.partners = [self.world.CreateKinematicBody() for _ in self.arms]
+        limit = system.friction_force * system.contact_radius if self.patch else 0.0
+        self.partners = [self.world.CreateKinematicBody(angularVelocity=system.disc_speed) for _ in self.arms]
         for arm, partner in zip(self.arms, self.partners, strict=True):
             self.world.CreateFrictionJoint(
                 bodyA=partner,
@@ -47,7 +48,7 @@ class _World(TopDown):
                 localAnchorA=(0.0, 0.0),
                 localAnchorB=(arm.real, arm.imag),
                 maxForce=system.friction_force / len(self.arms),
-                maxTorque=0.0,
+                maxTorque=limit,
             )
 
     def state(self) -> tuple[float, ...]:
@@ -68,6 +69,10 @@ class _World(TopDown):
             turn = round(self.body.angle / (2.0 * math.pi))
             self.body.angle -= 2.0 * math.pi * turn
             self.turns += turn
+
+
+class _Patch(_World):
+    kinds, patch = ("ring",), True
 
 
 class _Joint(JointModel):
@@ -105,6 +110,13 @@ friction_joint = Setting(
     finest=2e-3,
     precision=1e-6,
     joint=_Joint,
+)
+torque = replace(
+    friction_joint,
+    name="friction joint with torque",
+    says="with a disc on one friction joint with limits of force and torque, in single precision.",
+    model=_Patch,
+    joint=None,
 )
 shipped = replace(
     friction_joint,

@@ -54,7 +54,7 @@ class _World(Model):
         # The feet take half of the largest mass that mass and inertia allow.
         feet = self.arms if self.native else []
         mass, inertia = system.mass, inertia_of(system)
-        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if self.half > 2 else mass) / 2.0 / len(self.arms)
+        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if self.arms[0] else mass) / 2.0 / len(self.arms)
         carriage = mass - foot * len(feet), inertia - foot * sum(abs(arm) ** 2 for arm in feet)
         weightless = [(0.0, 0.0)] * (len(self.joints) - 1)
         sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=1.0, physicsClientId=self.client)
@@ -70,6 +70,10 @@ class _World(Model):
             pybullet.resetJointState(self.body, joint, position, speed, physicsClientId=self.client)
         if self.native:
             pybullet.setGravity(0.0, 0.0, -self.load / foot, physicsClientId=self.client)
+            if self.patch:
+                pybullet.changeDynamics(
+                    self.body, self.half, spinningFriction=system.contact_radius, physicsClientId=self.client
+                )
             plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
             plate = self._body(0.0, [(mass, 1e12 * inertia)], [plane], [0j], [0], ["turn"])
             pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
@@ -150,6 +154,10 @@ class _World(Model):
         return forces
 
 
+class _Patch(_World):
+    kinds, patch = ("ring",), True
+
+
 class _Joint(JointModel, _World):
     """A revolute joint with a velocity motor, whose force limit is the friction moment."""
 
@@ -191,6 +199,12 @@ shipped = Setting(
     _World,
     {"friction": "as shipped"},
     joint=_Joint,
+)
+spinning = Setting(
+    "spinning friction",
+    "with a disc on one contact with spinning friction, and the cone.",
+    _Patch,
+    {"friction": "cone"},
 )
 our_force = Setting(
     "our force",

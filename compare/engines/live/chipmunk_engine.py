@@ -42,6 +42,11 @@ class _Space(TopDown):
             joint = pymunk.PivotJoint(partner, self.body, (0.0, 0.0), (arm.real, arm.imag))
             joint.max_bias, joint.max_force = 0.0, system.friction_force / len(self.arms)
             self.space.add(partner, joint)
+            if self.patch:
+                gear = pymunk.GearJoint(partner, self.body, 0.0, 1.0)
+                gear.max_bias, gear.max_force = 0.0, system.friction_force * system.contact_radius
+                partner.angular_velocity = system.disc_speed
+                self.space.add(gear)
 
     def state(self) -> tuple[float, ...]:
         body = self.body
@@ -60,6 +65,10 @@ class _Space(TopDown):
     def _change_velocity(self, body: Any, gravity: Any, damping: float, h: float) -> None:
         self.load_now()
         pymunk.Body.update_velocity(body, gravity, damping, h)
+
+
+class _Patch(_Space):
+    kinds, patch = ("ring",), True
 
 
 class _Joint(JointModel):
@@ -91,6 +100,11 @@ pivot = Setting(
     "by pivot joints with a force limit, as in its top-down tank demo, with steps of order 1.",
     _Space,
     joint=_Joint,
+)
+gear = Setting(
+    "pivot and gear joint",
+    "with a disc on one pivot joint and one gear joint, whose force limits stand for friction in the tank demo.",
+    _Patch,
 )
 shipped = Setting(
     "as shipped",

@@ -19,7 +19,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydrake.geometry import AddContactMaterial, Box, ProximityProperties, Sphere
+from pydrake.geometry import (
+    AddCompliantHydroelasticPropertiesForHalfSpace,
+    AddContactMaterial,
+    AddRigidHydroelasticProperties,
+    Box,
+    Cylinder,
+    HalfSpace,
+    ProximityProperties,
+    Sphere,
+)
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
 from pydrake.multibody.tree import (
@@ -50,6 +59,9 @@ DEPTH = 1e3
 """Depth of the spheres in the plate in m. SAP lets sliding bodies rise by μ·h times the slip (μ = 1): far less."""
 
 RADIUS = 1e-3  # radius of the spheres in m
+FACET = 2.0 * math.pi / 100
+"""Angle in rad of an edge of the cylinder's mesh."""
+
 STIFF = 1e9
 """Gain of a motor in 1/s, times the inertia."""
 
@@ -58,12 +70,16 @@ PLATE = 1e5  # edge length of the plate in m
 
 @dataclass(frozen=True)
 class _Scheme:
-    """A discrete ``solver`` or an ``integrator``, with a heavy or a ``driven`` master."""
+    """A discrete ``solver`` or an ``integrator``, with a heavy or a ``driven`` master.
+
+    With ``hydroelastic``, a cylinder's flat end stands for a ring.
+    """
 
     solver: str = ""
     integrator: str = ""
     driven: bool = False
     our_force: bool = False
+    hydroelastic: bool = False
 
 
 class _Plant:
@@ -75,7 +91,8 @@ class _Plant:
         self.epsilon = 1e-3 * fastest * step if step else 1e-2 * math.sqrt(tolerance)
         if scheme.solver == "sap":
             self.epsilon = 5e-4 * step * system.friction_force / system.mass
-        config = MultibodyPlantConfig(time_step=step, contact_model="point", use_sampled_output_ports=False)
+        contact = "hydroelastic" if scheme.hydroelastic else "point"
+        config = MultibodyPlantConfig(time_step=step, contact_model=contact, use_sampled_output_ports=False)
         config.stiction_tolerance = self.epsilon or 1.0
         if step:
             config.discrete_contact_approximation, config.sap_near_rigid_threshold = scheme.solver, 0.0
@@ -98,7 +115,7 @@ class _Plant:
         spring = (none, none, np.full(3, system.stiffness), none)
         self.plant.AddForceElement(LinearBushingRollPitchYaw(rest, body.body_frame(), *spring))
         if not scheme.our_force and system.friction_force > 0.0:
-            self._touch(body, master)
+            (self._touch_flat if scheme.hydroelastic else self._touch)(body, master)
         if scheme.driven and step:
             motor = self.plant.AddJointActuator("motor", self.master)
             motor.set_controller_gains(PdControllerGains(p=0.0, d=STIFF * inertia * fastest))
@@ -135,6 +152,20 @@ class _Plant:
         for i, arm in enumerate(arms):
             place = RigidTransform([arm.real, arm.imag, RADIUS - DEPTH])
             self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
+
+    def _touch_flat(self, body: Any, master: Any) -> None:
+        """Press a rigid cylinder into a soft half-space, whose pressure is modulus times depth over thickness."""
+        radius, (hard, soft) = self.system.contact_radius, (ProximityProperties(), ProximityProperties())
+        for material in (hard, soft):
+            AddContactMaterial(0.0, None, CoulombFriction(1.0, 1.0), material)
+            material.AddProperty("material", "relaxation_time", 0.0)
+        sides = 2.0 * math.pi / FACET
+        modulus = self.system.friction_force / (0.5 * sides * math.sin(FACET) * radius**2)
+        AddCompliantHydroelasticPropertiesForHalfSpace(1.0, modulus, soft)
+        AddRigidHydroelasticProperties(FACET * radius, hard)
+        height = RigidTransform([0.0, 0.0, radius - 1.0])  # the flat end is 1 m deep
+        self.plant.RegisterCollisionGeometry(master, RigidTransform(), HalfSpace(), "plate", soft)
+        self.plant.RegisterCollisionGeometry(body, height, Cylinder(radius, 2.0 * radius), "foot", hard)
 
     def start(self, state: FloatArray) -> None:
         """Set the initial state."""
@@ -212,6 +243,10 @@ class _Motion(Model):
         return steps, steps
 
 
+class _Patch(_Motion):
+    kinds, patch = ("ring",), True
+
+
 class _Joint(JointModel):
     """A joint with a motor of speed 0, whose effort limit is the friction moment, because joints have no friction."""
 
@@ -272,6 +307,13 @@ lagged = Setting(
     {"scheme": _Scheme("lagged", driven=True)},
     finest=2e-3,
     joint=_Joint,
+)
+hydroelastic = Setting(
+    "hydroelastic",
+    "with a disc whose flat face is a hydroelastic contact, by SAP and steps of order 1.",
+    _Patch,
+    {"scheme": _Scheme("sap", driven=True, hydroelastic=True)},
+    finest=2e-3,
 )
 cenic = Setting(
     "cenic",

@@ -46,16 +46,17 @@ class _Contact:
     size: float = 1.0
     plate: float = 1e2
     pair: str = ""
+    condim: int = 3
 
     @classmethod
-    def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
+    def rigid(cls, cone: str, friction_rate: float, iterations: int, condim: int = 3) -> _Contact:
         """Return a contact that converges to Coulomb's law.
 
         Feet and plate are much larger than the vertical motion of a foot, so it does not affect horizontal motion.
         """
         pair = 'margin="5e5" solimp="0.9999 0.9999 1 0.5 2" solref="0 -1" solreffriction="0 -1"'
         option = f'cone="{cone}" iterations="{iterations}" tolerance="0"'
-        return cls(option, friction_rate, gravity=math.inf, size=1e6, plate=1e12, pair=pair)
+        return cls(option, friction_rate, gravity=math.inf, size=1e6, plate=1e12, pair=pair, condim=condim)
 
 
 class _Model(Model):
@@ -112,6 +113,10 @@ class _Model(Model):
         data.qfrc_passive += our_friction(self.system, self.arms, state, self.epsilon)
 
 
+class _Patch(_Model):
+    kinds, patch = ("ring",), True
+
+
 class _Joint(JointModel):
     """A hinge with ``frictionloss``."""
 
@@ -142,17 +147,17 @@ class _Joint(JointModel):
 
 def _xml(system: System, arms: list[complex], option: str, contact: _Contact | None, turns: bool) -> str:
     """Return the model, with joints in this order: pin or disc, feet, plate."""
-    disc = isinstance(system, DiscOnDisc)
+    radius = system.contact_radius if isinstance(system, DiscOnDisc) else 1.0
     inertia = inertia_of(system)
     feet, touch = (arms, contact) if contact else ([], _Contact())
     size, rigid = touch.size, touch.friction_rate > 0.0 or not contact
     # The feet take half of the largest mass that mass and inertia allow.
-    foot = min(system.mass, inertia / abs(arms[0]) ** 2 if disc else system.mass) / 2.0 / len(arms)
+    foot = min(system.mass, inertia / abs(arms[0]) ** 2 if arms[0] else system.mass) / 2.0 / len(arms)
     spin = 0.1 * inertia / len(arms)
     mass = system.mass - len(feet) * foot
     inertia -= sum(foot * abs(arm) ** 2 + spin for arm in feet)
     load = system.friction_force / len(arms)
-    mu = max(LEAST_COEFFICIENT, load / (foot * touch.gravity))
+    mu = max(LEAST_COEFFICIENT / min(radius, 1.0), load / (foot * touch.gravity))
     support = f'stiffness="{system.stiffness!r}" damping="{system.damping!r}"'
     turn = (
         f'<joint type="hinge" axis="0 0 1" damping="{system.shaft_damping!r}"/>'
@@ -166,7 +171,7 @@ def _xml(system: System, arms: list[complex], option: str, contact: _Contact | N
         for i, arm in enumerate(feet)
     )
     pairs = "".join(
-        f'<pair geom1="plate" geom2="{i}" condim="3" friction="{mu} {mu}" {touch.pair}/>'
+        f'<pair geom1="plate" geom2="{i}" condim="{touch.condim}" friction="{mu} {mu} {mu * radius}" {touch.pair}/>'
         for i in range(len(feet))
     )
     hinge = f'<joint type="hinge" axis="0 0 1" armature="{touch.plate * system.mass}"/>' if turns else ""
@@ -221,6 +226,24 @@ shipped = Setting(
     _Model,
     {"contact": _Contact(), "friction": "as shipped"},
     joint=_Joint,
+)
+condim_4 = Setting(
+    "condim 4",
+    "with a disc on one contact of condim 4, with friction against spin, in the elliptic cone and rigid contact.",
+    _Patch,
+    {"contact": _Contact.rigid("elliptic", 2.0, 10, condim=4), "friction": "condim 4"},
+)
+condim_6 = Setting(
+    "condim 6",
+    "with a disc on one contact of condim 6, which also opposes rolling.",
+    _Patch,
+    {"contact": _Contact.rigid("elliptic", 2.0, 10, condim=6), "friction": "condim 6"},
+)
+condim_4_shipped = Setting(
+    "condim 4, as shipped",
+    "with a disc on one contact of condim 4, in the default pyramid and soft contact.",
+    _Patch,
+    {"contact": _Contact(condim=4), "friction": "condim 4"},
 )
 our_force = Setting(
     "our force",

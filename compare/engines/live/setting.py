@@ -32,7 +32,8 @@ class Model:
 
     ``arms`` are the contact points, ``half`` is the number of coordinates, ``method`` names integrator and contact,
     and ``epsilon`` is the slip speed in m/s that regularises the friction law. A ``linear`` model has springs without
-    hardening and stop.
+    hardening and stop. In a ``patch``, one contact with the engine's own friction against spin stands for a ring; its
+    moment alone is at most μN·R.
     """
 
     engine = ""
@@ -40,11 +41,12 @@ class Model:
     method = ""
     most_points = math.inf
     linear = True
+    patch = False
     epsilon = 0.0
 
     def __init__(self, system: System, state: FloatArray, tolerance: float, **options: Any) -> None:
         self.system, self.half = system, len(state) // 2
-        self.arms = contact_arms(self.engine, system, self.most_points)
+        self.arms = [0j] if self.patch else contact_arms(self.engine, system, self.most_points)
         self.build(state, tolerance, **options)
 
     def build(self, state: FloatArray, tolerance: float, *_: Any, **options: Any) -> None:
