@@ -99,7 +99,7 @@ const engines = {
       heavy(body, joint.inertia, joint.inertia);
       const axle = world.createImpulseJoint(R.JointData.revolute(none, none, xyz([0, 0, 1])), ground, body, true);
       axle.configureMotorModel(R.MotorModel.ForceBased);
-      axle.configureMotorVelocity(0, 1e6 * joint.inertia);
+      axle.configureMotorVelocity(0, 1e9 * joint.inertia);
       axle.setMotorMaxForce(joint.friction_moment);
       const step = (h, [torque]) => {
         world.timestep = h;

@@ -28,7 +28,7 @@ INSTALLED = {
     "mujoco": Installed(
         "MuJoCo",
         (
-            *("ellipse", "ellipse-rk4", "pyramid", "shipped"),
+            *("ellipse", "ellipse-rk4", "elliptic", "pyramid", "shipped"),
             *("condim-4", "condim-6", "condim-4-shipped", "our-force"),
         ),
         "mujoco",

@@ -227,6 +227,12 @@ shipped = Setting(
     {"contact": _Contact(), "friction": "as shipped"},
     joint=_Joint,
 )
+elliptic = Setting(
+    "cone=elliptic alone",
+    "with the elliptic cone and otherwise all its defaults: soft contact, which creeps at any step.",
+    _Model,
+    {"contact": _Contact('cone="elliptic"'), "friction": "elliptic cone, soft contact"},
+)
 condim_4 = Setting(
     "condim 4",
     "with a disc on one contact of condim 4, with friction against spin, in the elliptic cone and rigid contact.",
