@@ -129,6 +129,10 @@ def _slides(motion: FloatArray) -> float:
     return 1.0 if motion[0] > CLOSE * SPEED else 0.0
 
 
+def _larger(motion: FloatArray, _: float) -> tuple[float, float]:
+    return (1.0, 0.0) if motion[0] > motion[1] else (0.0, 1.0)
+
+
 def _separate(motion: FloatArray, number: float) -> tuple[float, float]:
     return _slides(motion), number if motion[1] > CLOSE * SPEED else 0.0
 
@@ -149,6 +153,7 @@ def _laws(right: Contact) -> list[Law]:
     return [
         *(Law(f"has the friction of {name}", _on(contact)) for name, contact in CONTACTS.items()),
         Law("has no friction against spin", lambda motion, _: (_slides(motion), 0.0)),
+        Law("has friction against the larger of slide and spin only, a pyramid", _larger),
         Law("has separate limits for slide and spin, μN and {number}·μNR", _separate, (0.01, 3.0)),
         Law("has the friction of an ellipsoid with the limits μN and {number}·μNR", _ellipsoid, (0.01, 3.0)),
         Law(

@@ -13,7 +13,7 @@ from dataclasses import replace
 import Box2D
 import numpy as np
 
-from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of
+from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of, radius_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS, RECOMMENDED = 50, (8, 3)
@@ -39,7 +39,7 @@ class _World(TopDown):
         self.body.massData = Box2D.b2MassData(mass=system.mass, I=inertia_of(system), center=(0.0, 0.0))
         if disc:
             self.body.angle, self.body.angularVelocity = float(places[2]), float(speeds[2])
-        limit = system.friction_force * system.contact_radius if self.patch else 0.0
+        limit = system.friction_force * radius_of(system) if self.patch else 0.0
         self.partners = [self.world.CreateKinematicBody(angularVelocity=system.disc_speed) for _ in self.arms]
         for arm, partner in zip(self.arms, self.partners, strict=True):
             self.world.CreateFrictionJoint(

@@ -26,6 +26,7 @@ from compare.engines.live.setting import (
     inertia_of,
     mobility,
     our_friction,
+    radius_of,
     shaft_torque,
     support_force,
 )
@@ -72,7 +73,7 @@ class _World(Model):
             pybullet.setGravity(0.0, 0.0, -self.load / foot, physicsClientId=self.client)
             if self.patch:
                 pybullet.changeDynamics(
-                    self.body, self.half, spinningFriction=system.contact_radius, physicsClientId=self.client
+                    self.body, self.half, spinningFriction=radius_of(system), physicsClientId=self.client
                 )
             plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
             plate = self._body(0.0, [(mass, 1e12 * inertia)], [plane], [0j], [0], ["turn"])

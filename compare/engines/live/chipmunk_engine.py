@@ -13,7 +13,7 @@ from typing import Any
 
 import pymunk
 
-from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of
+from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of, radius_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50
@@ -44,7 +44,7 @@ class _Space(TopDown):
             self.space.add(partner, joint)
             if self.patch:
                 gear = pymunk.GearJoint(partner, self.body, 0.0, 1.0)
-                gear.max_bias, gear.max_force = 0.0, system.friction_force * system.contact_radius
+                gear.max_bias, gear.max_force = 0.0, system.friction_force * radius_of(system)
                 partner.angular_velocity = system.disc_speed
                 self.space.add(gear)
 

@@ -50,6 +50,7 @@ from compare.engines.live.setting import (
     contact_arms,
     inertia_of,
     our_friction,
+    radius_of,
     rate,
 )
 from reference_model.systems import DiscOnDisc, FloatArray, System
@@ -155,7 +156,7 @@ class _Plant:
 
     def _touch_flat(self, body: Any, master: Any) -> None:
         """Press a rigid cylinder into a soft half-space, whose pressure is modulus times depth over thickness."""
-        radius, (hard, soft) = self.system.contact_radius, (ProximityProperties(), ProximityProperties())
+        radius, (hard, soft) = radius_of(self.system), (ProximityProperties(), ProximityProperties())
         for material in (hard, soft):
             AddContactMaterial(0.0, None, CoulombFriction(1.0, 1.0), material)
             material.AddProperty("material", "relaxation_time", 0.0)

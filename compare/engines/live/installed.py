@@ -34,7 +34,10 @@ INSTALLED = {
         "mujoco",
     ),
     "bullet": Installed(
-        "Bullet", ("cone", "box", "shipped", "spinning", "our-force"), "pybullet", "Linux; elsewhere pip compiles it"
+        "Bullet",
+        ("cone", "box", "shipped", "spinning", "our-force"),
+        "pybullet",
+        "Linux; elsewhere pip compiles it",
     ),
     "drake": Installed(
         "Drake",

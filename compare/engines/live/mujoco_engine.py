@@ -30,7 +30,15 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from compare.engines.live.setting import JointModel, Model, Setting, inertia_of, mobility, our_friction
+from compare.engines.live.setting import (
+    JointModel,
+    Model,
+    Setting,
+    inertia_of,
+    mobility,
+    our_friction,
+    radius_of,
+)
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
@@ -147,7 +155,7 @@ class _Joint(JointModel):
 
 def _xml(system: System, arms: list[complex], option: str, contact: _Contact | None, turns: bool) -> str:
     """Return the model, with joints in this order: pin or disc, feet, plate."""
-    radius = system.contact_radius if isinstance(system, DiscOnDisc) else 1.0
+    radius = radius_of(system) or 1.0
     inertia = inertia_of(system)
     feet, touch = (arms, contact) if contact else ([], _Contact())
     size, rigid = touch.size, touch.friction_rate > 0.0 or not contact

@@ -200,6 +200,11 @@ def inertia_of(system: System) -> float:
     return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
 
 
+def radius_of(system: System) -> float:
+    """Return R, or 0 of a pin."""
+    return system.contact_radius if isinstance(system, DiscOnDisc) else 0.0
+
+
 def shaft_torque(system: System, spin: float) -> float:
     """Return the torque in N m of the shaft on a disc; 0 for a pin."""
     return system.shaft_damping * (system.shaft_speed - spin) if isinstance(system, DiscOnDisc) else 0.0

@@ -92,7 +92,7 @@ def _orders(
     predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
 ) -> Measured:
     by_name = {recording.name: recording for recording in theory.recorded()}
-    runs = {(name, case): theory.halvings(by_name[name].runs[case]) for case in cases for name in wanted}
+    runs = {(name, case): by_name[name].runs[case] for case in cases for name in wanted}
     found = [
         observed_exponent(1.0 / rows[:, STEPS], rows[:, ERROR], next_term=1.0)
         if scatters
@@ -154,7 +154,7 @@ def pyramid_releases() -> Measured:
 
 def _as_far_off_as(law: theory.Law, case: str, wanted: tuple[str, ...]) -> Measured:
     by_name = {recording.name: recording for recording in theory.recorded()}
-    errors = np.array([theory.halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
+    errors = np.array([by_name[name].runs[case][-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
     rounding = 0.5 * 10.0 ** (1 - DIGITS) * errors[:, -1]
     predicted, smoothing = theory.error_of(law, CASES[case])
