@@ -41,7 +41,7 @@ from compare.engines import INSTALLED, Engine, UnsupportedSystemError, installed
 from compare.engines.live.setting import rate
 from compare.foreign import CASES, COLUMNS, DIGITS, FOLDER, Case
 from compare.run.measuring import measured as claims_about
-from compare.run.workers import Failure, Workers
+from compare.run.workers import Workers
 from compare.studies import studies
 from reference_model import SimulationError, Trajectory
 from reference_model.systems import System
@@ -250,10 +250,10 @@ def probes(engine: Engine) -> dict[str, Any]:
             if probe in PROBES and probe != TOO_LARGE:
                 workers.submit(probe, measured, engine, probe)
         for done in workers.finished():
-            if isinstance(done.value, Failure):
-                print(f"  {engine.name}, {done.key}: {done.value}", flush=True)
-            else:
+            if isinstance(done.value, PROBES[str(done.key)]):
                 found[str(done.key)] = as_json(done.value)
+            else:  # a failure, a refusal, or motions beyond the engine's ranges
+                print(f"  {engine.name}, {done.key}: {done.value}", flush=True)
     return found
 
 

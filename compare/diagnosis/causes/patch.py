@@ -119,6 +119,16 @@ def _on(contact: Contact) -> Wrench:
     return wrench
 
 
+def _stopping(motion: FloatArray, _: float) -> tuple[float, float]:
+    """Return the wrench of points whose tangential mobility is twice the radial mobility, as on discs of J = mR²."""
+    slip, rim, angle = motion.tolist()
+    arms = np.exp(1j * (angle + 2.0 * math.pi * np.arange(POINTS) / POINTS))
+    stops = (slip + 1j * rim * arms) * np.conj(arms)  # radial + i·tangential
+    stops.imag *= 0.5
+    directions = arms * stops / np.abs(stops)
+    return float(np.mean(directions.real)), float(np.mean((np.conj(arms) * directions).imag))
+
+
 def _ellipsoid(motion: FloatArray, number: float) -> tuple[float, float]:
     slip, rim = float(motion[0]), float(motion[1])
     size = math.hypot(slip, number * rim)
@@ -152,6 +162,7 @@ def _laws(right: Contact) -> list[Law]:
     exact = _on(right)
     return [
         *(Law(f"has the friction of {name}", _on(contact)) for name, contact in CONTACTS.items()),
+        Law("has friction along the impulse that would stop each of 6 points alone", _stopping),
         Law("has no friction against spin", lambda motion, _: (_slides(motion), 0.0)),
         Law("has friction against the larger of slide and spin only, a pyramid", _larger),
         Law("has separate limits for slide and spin, μN and {number}·μNR", _separate, (0.01, 3.0)),

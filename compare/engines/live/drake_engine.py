@@ -73,7 +73,7 @@ PLATE = 1e5  # edge length of the plate in m
 class _Scheme:
     """A discrete ``solver`` or an ``integrator``, with a heavy or a ``driven`` master.
 
-    With ``hydroelastic``, a cylinder's flat end stands for a ring.
+    A ``hydroelastic`` contact is the flat end of a cylinder, which stands for a ring.
     """
 
     solver: str = ""

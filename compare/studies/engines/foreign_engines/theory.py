@@ -357,7 +357,7 @@ def tables() -> tuple[Table, ...]:
         ),
         Table(f"Time in ms on one core for an error of {WANTED:g} m.", ("Engine, setting", *titles), cost),
         Table(
-            "Disc that slides and spins, at eight ratios of slide to spin: the friction law and its largest deviation.",
+            "Disc that slides and spins, at eight ratios of slide to spin: friction law and largest deviation.",
             ("Engine, setting", "Friction law"),
             spun,
         ),
