@@ -84,7 +84,7 @@ def draw() -> Figure:
             panel.text(column + 0.2 * bool(mark) + 0.06, line + 0.36, error, va="center", fontsize=10)
             panel.text(column + 0.96, line + 0.36, order, va="center", ha="right", fontsize=8, color="0.25")
             below = 0.5 if name == "spin" else 0.77
-            said = textwrap.fill(_short(cost), 32)
+            said = textwrap.fill(_short(cost), 36)
             panel.text(column + 0.06, line + below, said, va="center", fontsize=8, color="0.25")
         panel.text(-0.06, line + 0.5, engine, va="center", ha="right", fontsize=10)
     for column, case in enumerate(CASES.values()):
@@ -92,7 +92,7 @@ def draw() -> Figure:
         panel.text(column + 0.5, -0.2, case.truth, va="bottom", ha="center", fontsize=9, color="0.25")
     panel.text(len(CASES) + 0.06, -0.75, "friction law", va="bottom", fontsize=10.5)
     panel.text(len(CASES) + 1.06, -0.75, "slide with spin", va="bottom", fontsize=10.5)
-    panel.set(xlim=(-1.6, len(names) + 0.3), ylim=(len(table), -1.6))
+    panel.set(xlim=(-1.6, len(names) + 0.5), ylim=(len(table), -1.6))
     panel.axis("off")
     return figure
 

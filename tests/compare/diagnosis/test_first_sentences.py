@@ -104,6 +104,15 @@ def stopped_alone(slip, rim, size, angle):
     return np.mean(arms * local), np.mean(local.imag)
 
 
+def stopped_by_axis(slip, rim, size, angle):
+    """Return the same friction without the coupling of the impulses along x and y."""
+    arms = np.exp(1j * (angle + np.pi / 3.0 * np.arange(6)))
+    speeds = slip + 1j * rim * arms
+    forces = speeds.real / (1.0 + arms.imag**2) + 1j * speeds.imag / (1.0 + arms.real**2)
+    forces /= np.maximum(np.abs(forces), 1e-3 * size)
+    return np.mean(forces), np.mean((np.conj(arms) * forces).imag)
+
+
 MU = "the coefficient μ is"
 random = np.random.default_rng(3)
 
@@ -225,6 +234,11 @@ WRONG = [
     (
         sliding_disc("stopped", stopped_alone),
         "along the impulse that would stop each of 6 points alone",
+        "or",
+    ),
+    (
+        sliding_disc("by axis", stopped_by_axis),
+        "along the impulse that would stop each of 6 points by axis",
         "or",
     ),
     (sliding_disc("no spin friction", lambda u, *_: (along(u), 0.0)), "no friction against spin; it", "or"),

@@ -12,7 +12,7 @@ import compare.foreign
 from compare.claims.claim import Verdict
 from compare.claims.parameters import FIG11
 from compare.diagnosis.run import row_of
-from compare.engines import UnsupportedSystemError, engines
+from compare.engines import Engine, UnsupportedSystemError, engines
 from compare.engines.live import setting
 from compare.foreign import CASES, CHANGE, COLUMNS, ERROR, SECONDS, STEPS, estimate, recordings
 from compare.output.figures import paper_style
@@ -23,7 +23,6 @@ from compare.studies.engines.foreign_engines import theory
 from compare.studies.engines.foreign_engines.study import STUDY
 from compare.studies.engines.foreign_engines.theory import (
     BY_AXIS,
-    halvings,
     recorded_claims,
     recorded_settings,
     time_to,
@@ -32,7 +31,7 @@ from reference_model import plain
 
 OURS = {"reference", "exudyn", "exudyn-native"}
 NAMES = {case.sentence: name for name, case in CASES.items()}
-PINS_ONLY = {"Rapier", "Jolt", "cannon-es", "planck"}
+PINS_ONLY = {"Rapier", "Jolt", "PhysX", "Havok", "cannon-es", "planck"}
 
 
 def verdicts(claims):
@@ -55,7 +54,7 @@ def test_the_recordings_contain_every_engine_in_every_case_that_it_simulates():
     assert len([recording for recording in found if recording.engine not in OURS]) == 35
     assert all(
         set(CASES) - set(recording.runs) == ({"disc"} if recording.engine in PINS_ONLY else set())
-        for recording in found
+        for recording in theory.recorded()
     )
     assert all(recording.says for recording in found if recording.engine not in OURS)
 
@@ -180,9 +179,21 @@ def test_the_time_to_an_error_is_interpolated_by_powers():
     assert time_to(1e-9, runs) == "not reached"
 
 
-def test_an_order_needs_runs_with_halved_steps():
-    runs = runs_of(np.ones(6), steps=np.array([3.0, 10.0, 20.0, 40.1, 80.0, 90.0]))
-    assert halvings(runs)[:, STEPS].tolist() == [10.0, 20.0, 40.1, 80.0]
+@pytest.mark.parametrize("finest", [0.0, 2e-3])
+def test_fixed_steps_are_halved_down_to_the_smallest(record, finest):
+    engine = Engine("stepped", lambda *motion, step: None, step=2e-3)
+    wanted = record.accuracies(record.Setting(engine, engine.function, "", finest), CASES["release"])
+    turns = 1.5 * np.array([accuracy["step"] for accuracy in wanted])
+    assert turns[:-1] / turns[1:] == pytest.approx(2.0, rel=1e-12)
+    assert (2e-3 <= turns[-1] < 3e-3) if finest else turns[-1] < 1e-4
+
+
+def test_recorded_steps_are_halved():
+    for recording in recordings():
+        for case, runs in recording.runs.items():
+            if recording.step is not None:
+                ratios = runs[1:, STEPS] / runs[:-1, STEPS]
+                assert ratios == pytest.approx(2.0, rel=1e-3), f"{recording.name}, {case}"  # four digits
 
 
 def spoilt(change):
@@ -263,7 +274,7 @@ def test_figures_show_every_recording():
     for name, figure in figures.items():
         shown = {line.get_label() for panel in figure.axes for line in panel.get_lines()}
         hidden = OURS | (PINS_ONLY if name == "foreign-engines-disc" else set())
-        wanted = {found.name for found in recordings() if found.engine not in hidden}
+        wanted = {found.name for found in theory.recorded() if found.engine not in hidden}
         assert {label for label in shown if not label.startswith("_")} == wanted
         said = {text.get_text() for panel in figure.axes for text in panel.texts}
         assert {"as shipped", "reference", "elliptic cone", "lagged (as shipped)"} <= said
@@ -273,7 +284,7 @@ def test_the_page_contains_the_tables(tmp_path):
     undrawn = replace(STUDY, declared=[], provided={"tables": STUDY.provided["tables"]})
     write_report(run((undrawn,), (), folder=tmp_path), tmp_path)
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert page.count('class="evidence words"') == 3
+    assert page.count('class="evidence words"') == 4
     assert all(recording.name in page for recording in recordings())
 
 
@@ -348,7 +359,7 @@ def test_a_ladder_ends_at_the_smallest_step(record):
             known[asked] = euler()(system, start, times, tolerance=asked[1])
         return known[asked]
 
-    rows = record.ladder(clamped, CASES["disc"])
+    rows = record.ladder(record.Setting(Engine("clamped", clamped), clamped), CASES["disc"])
     assert len(rows) == 3  # at 1e-2, 1.25e-3 and 1e-3, which replaces 1.56e-4
     assert rows[0][CHANGE] is None
     assert rows[1][CHANGE] > 0.0
