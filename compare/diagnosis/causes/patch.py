@@ -219,12 +219,15 @@ def law_of(found: Patch, strength: float) -> tuple[str, bool]:
         own = _deviation(_on(exact), 1.0, motions, wrenches)
         size = f"{error_text(100.0 * own)} % of μN"
         if own > allowed:
-            fits = [(*_fit(law, motions, wrenches), law.bounds is None) for law in _laws(exact)]
-            close = [one for one in fits if one[0] <= allowed]
-            certain = [one for one in close if one[2]] or close  # laws without a free number explain more
-            nearest, closest, _ = min(fits)
+            fits, close = list[tuple[float, str]](), list[tuple[float, str]]()
+            for free in (False, True):  # laws without a free number explain more
+                if not close:
+                    laws = [law for law in _laws(exact) if (law.bounds is not None) == free]
+                    fits += [_fit(law, motions, wrenches) for law in laws]
+                    close = [one for one in fits if one[0] <= allowed]
+            nearest, closest = min(fits)
             rest = f"follows no known law: the closest {closest}, up to {error_text(100.0 * nearest)} % of μN"
-            said = " or ".join(text for _, text, _ in certain) or rest
+            said = " or ".join(text for _, text in close) or rest
             if close and MOMENT in said and abs(found.shaft - 1.0) > CLOSE:
                 said = f"has {1.0 / found.shaft:.3g} times the right {INERTIA}"
             return (

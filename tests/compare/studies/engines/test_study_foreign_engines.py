@@ -31,6 +31,10 @@ from reference_model import plain
 
 OURS = {"reference", "exudyn", "exudyn-native"}
 NAMES = {case.sentence: name for name, case in CASES.items()}
+SEPARATE = (
+    *("Bullet, spinning friction", "Chipmunk, pivot and gear joint", "Box2D, friction joint with torque"),
+    *("Rapier, box", "Jolt, box"),
+)
 PINS_ONLY = {"Rapier", "Jolt", "PhysX", "Havok", "cannon-es", "planck"}
 
 
@@ -257,6 +261,30 @@ def test_a_whirl_under_another_law_is_read_after_it_has_settled(law, wanted, off
 
 
 # ---------------------------------------------------------------- files, figures, page
+
+
+@pytest.fixture(scope="module")
+def laws_of_spin():
+    return dict(theory.tables()[2].rows)
+
+
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [
+        ("MuJoCo, elliptic cone", "is right to 0.051 % of μN"),
+        ("MuJoCo, condim 4", "has the friction of an ellipsoid with the limits μN and 1·μNR"),
+        ("MuJoCo, condim 4, as shipped", "has friction against the larger of slide and spin only, a pyramid"),
+        ("MuJoCo, as shipped", "is known only to 19 % of μN"),
+        ("Bullet, cone", "has friction along the impulse that would stop each of 6 points by axis"),
+        ("Chipmunk, pivot joint", "has friction along the impulse that would stop each of 6 points alone"),
+        ("Box2D, friction joint", "has friction along the impulse that would stop each of 6 points alone"),
+        *((name, "has separate limits for slide and spin, μN and 1·μNR") for name in SEPARATE),
+        ("Drake, hydroelastic", "has the friction of a ring of 0.667 times the radius"),
+    ],
+)
+def test_the_law_of_slide_and_spin_of_each_engine_has_a_name(name, law, laws_of_spin):
+    said = laws_of_spin[name]
+    assert said.startswith(f"a disc that slides and spins {law}")
 
 
 def test_a_recording_with_unknown_columns_is_rejected(tmp_path, monkeypatch):
