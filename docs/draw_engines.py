@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 
 from compare.claims import Recorded
 from compare.claims.claim import Verdict
-from compare.diagnosis.causes.patch import law_of as law_of_spin
 from compare.diagnosis.row import Row
 from compare.diagnosis.run import row_of
 from compare.foreign import CASES
@@ -48,10 +47,7 @@ def law_of(row: Row) -> str:
 
 def spin_of(row: Row) -> str:
     """Return the law of a disc that slides and spins."""
-    if row.patch is None:
-        return ""
-    said, _ = law_of_spin(row.patch, row.law.strength if row.law else 1.0)
-    return re.sub(r"a disc that slides and spins (has |is )?|[;:,].*", "", said)
+    return re.sub(r"a disc that slides and spins (has |is )?|[;:,].*", "", row.spin[0])
 
 
 def cells() -> dict[str, dict[str, list[str]]]:
@@ -112,7 +108,8 @@ def _why(recorded: Recorded) -> list[str]:
     """Return the main clauses of the reasons of ✗, or of ? if there is no ✗."""
     by_mark: dict[str, list[str]] = {"✗": [], "?": []}
     for claim in recorded.claims:
-        why = re.split(r" with | under |, ", recorded.reasons.get(claim.sentence, ""))[0]
+        why = re.split(r" with | under |[,;] ", recorded.reasons.get(claim.sentence, ""))[0]
+        why = why.replace("a disc that slides and spins", "a disc on points")
         by_mark.get(state_of(claim).symbol, []).append(why)
     return list(dict.fromkeys(by_mark["✗"] or by_mark["?"]))
 

@@ -24,22 +24,29 @@ def test_a_mark_means_convergence_to_the_exact_motion_and_a_law_has_a_word(scrip
     laws = {engine: found["law"][1] for engine, found in cells.items()}
     assert [laws[one] for one in ("reference", "exudyn", "exudyn-native")] == ["cone"] * 3
     assert laws["MuJoCo, pyramidal cone"] == "pyramid"
-    assert laws["MuJoCo, as shipped"] == "unclear: creeps"
+    assert laws["MuJoCo, as shipped"] == laws["MuJoCo, cone=elliptic alone"] == "unclear: creeps"
+    assert cells["MuJoCo, cone=elliptic alone"]["stuck"][0] == "✗"
     assert "" not in laws.values()
     mark, error, order, cost = cells["Bullet, cone"]["disc"]
     assert (mark, error, order) == ("✗", "3e-04", "order 0.1")
-    assert cost == "7,000 steps per natural period, 1 s"
+    assert cost == "7,000 steps per natural period, 2 s"
+    *_, spin = cells["Bullet, cone"]["spin"]
+    assert spin == "friction along the impulse that would stop each of 6 points by axis"
 
 
 def test_the_table_says_why_an_engine_does_not_agree(script):
     lines = {line.split("|")[1].strip(): line for line in script["table"]().splitlines()}
-    assert len(lines) == 2 + 14
+    assert len(lines) == 2 + 16
     assert "| ✗ 1 of 6 cone | cone |" in lines["Bullet"]
-    assert lines["Bullet"].endswith("; the friction force on a disc is 21 % too large |")
-    assert lines["Chipmunk"].endswith("| the friction force on a disc is 45 % too large |")
-    assert "| ? 2 of 5 | ✓ contact |" in lines["Rapier"]
-    assert lines["Rapier"].endswith("| as shipped: its error bar of 0.33 m exceeds 0.080 m |")
-    assert "| 0.01 m, 7,000/T, 0.9 s |" in lines["Bullet"]
+    assert lines["Bullet"].endswith(
+        "; a disc on points has friction along the impulse that would stop each of 6 points by axis |"
+    )
+    assert lines["Chipmunk"].endswith(
+        "| a disc on points has friction along the impulse that would stop each of 6 points alone |"
+    )
+    assert "| ? 1 of 5 | ✓ contact |" in lines["Rapier"]
+    assert lines["Rapier"].endswith("| as shipped: its error bar of 0.17 m exceeds 0.080 m |")
+    assert "| 0.01 m, 7,000/T, 2 s |" in lines["Bullet"]
     assert all(
         line.rstrip().endswith("|  |") == ("✗" not in line and "?" not in line)
         for line in lines.values()

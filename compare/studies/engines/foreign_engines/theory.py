@@ -14,7 +14,6 @@ from compare.claims import ROUNDING, Claim, ErrorBudget, Recorded, refined
 from compare.claims.claim import Verdict
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Table
-from compare.diagnosis.causes.patch import law_of
 from compare.diagnosis.run import row_of
 from compare.engines import INSTALLED
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Case, Recording, estimate, recordings
@@ -341,11 +340,7 @@ def tables() -> tuple[Table, ...]:
         (recording.name, recording.version, recording.says, f"{recording.recorded}, {recording.platform}")
         for recording in recordings()
     )
-    spun = tuple(
-        (row.engine, law_of(row.patch, row.law.strength if row.law else 1.0)[0])
-        for row in map(row_of, recordings())
-        if row.patch is not None
-    )
+    spun = tuple((row.engine, row.spin[0]) for row in map(row_of, recordings()) if row.spin[0])
     return (
         Table(
             "Largest deviation from the exact motion over time in m, at the smallest step or tolerance, ± twice the "
