@@ -431,7 +431,7 @@ const engines = {
       };
       return { state: () => [body.getAngle(), body.getAngularVelocity()], step, close: () => {} };
     };
-    return { plane, hinge, title: "planck", version: versionOf("planck"), precision: 0, flat: false };
+    return { plane, hinge, title: "planck", version: versionOf("planck"), precision: 0 };
   },
 };
 
@@ -482,9 +482,9 @@ function simulate({ plane, hinge, reach = Infinity }, { system, state, times, st
 }
 
 engines[name]().then((engine) => {
-  const { title, version, hinge, reach = Infinity, precision = 1e-6, flat = true } = engine;
+  const { title, version, hinge, reach = Infinity, precision = 1e-6 } = engine;
   const ranges = reach < Infinity ? { coordinate: reach } : {};
-  const kinds = boxes ? ["ring"] : ["pin", ...(flat ? ["points"] : []), ...(hinge ? ["joint"] : [])];
+  const kinds = boxes ? ["ring"] : ["pin", ...(hinge ? ["joint"] : [])]; /* points only if there are four */
   const who = { name: [title, ...words.map((word) => (word === "shipped" ? "as shipped" : word))].join(", "), version };
   process.stdout.write(JSON.stringify({ ...who, kinds, step: 2e-3, precision, ranges }) + "\n");
   require("readline")
