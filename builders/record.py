@@ -130,7 +130,7 @@ def by_steps(
     """Return a motion from a program, which knows no tolerance."""
     before = time.perf_counter()
     found = engine.function(system, start, times, step=step)
-    steps = int(np.sum(np.ceil(np.diff(times) / step)))
+    steps = int(np.sum(np.ceil(np.diff(times) / step * (1.0 - 1e-9))))
     solution = Solution(engine.name, tolerance, steps, steps, time.perf_counter() - before)
     return replace(found, solution=solution)
 
@@ -144,7 +144,8 @@ def accuracies(setting: Setting, case: Case) -> Iterator[dict[str, float]]:
     turns, coarsest = interval * rate(case.system), 0.1 * tolerances[0] ** (1.0 / 3.0)
     number = math.ceil(turns / coarsest)
     if setting.finest:
-        number, tolerances = max(1, int(turns / setting.finest) >> LEAST - 1), tolerances[:LEAST]
+        # One run less, because a stuck pin would slip with the coarsest step.
+        number, tolerances = 2 * max(1, int(turns / setting.finest) >> LEAST - 1), tolerances[1:LEAST]
     for k, tolerance in enumerate(tolerances):
         steps = {"step": interval / (number << k)} if setting.engine.step is not None else {}
         yield {"tolerance": tolerance, **steps}
