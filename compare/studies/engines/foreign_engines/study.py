@@ -233,6 +233,8 @@ PANELS = {
 }
 """Motion of each figure, whose panels show one foreign engine each."""
 
+COLUMNS = 5
+
 
 def draw(data: ByEngine) -> Figures:
     if "theory" not in data:
@@ -247,8 +249,8 @@ def _by_engine(ladders: Data, settings: Sequence[Recorded], case: str) -> Figure
     for one in settings:
         if one.setting and f"{one.engine}, {one.setting}: {case}" in ladders:
             by_engine.setdefault(one.engine, []).append(one)
-    rows = -(-len(by_engine) // 4)
-    figure, panels = new_figure(4, rows, width=11.0, height=2.5 * rows, sharex=True, sharey=True)
+    rows = -(-len(by_engine) // COLUMNS)
+    figure, panels = new_figure(COLUMNS, rows, width=11.5, height=2.5 * rows, sharex=True, sharey=True)
     for panel, (engine, found) in zip(panels, by_engine.items(), strict=False):
         best = best_of(found)
         panel.loglog(*ladders[f"reference: {case}"].T, color=GREY, linestyle=":", linewidth=1.0)
