@@ -223,7 +223,7 @@ RECORDED = {
 
 def tables() -> tuple[Table, ...]:
     def deviation(claim: Mapping[str, Any]) -> str:
-        return error_text(float(np.max(claim["difference"])))
+        return error_text(float(np.max(np.array(claim["difference"], dtype=float))))
 
     rows = tuple(
         (one.name, *recorded_cells(one, STUDY.name, list(RECORDED), deviation), _in_words(one))

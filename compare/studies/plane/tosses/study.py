@@ -392,7 +392,7 @@ RECORDED = {
 
 
 def _numbers(values: Iterable[float]) -> str:
-    return ", ".join(f"{value:.2f}" for value in values)
+    return ", ".join(f"{value:.2f}" for value in map(float, values))
 
 
 STUDY.provides(tables=tables, validations=validations)
