@@ -1,12 +1,13 @@
 """Show the recorded engines: ``python docs/draw_engines.py`` draws ``engines.png`` and writes the table in README.
 
-The picture contains all settings, the table one row for each engine. The metadata of the picture contains its data,
-so a test can detect an outdated one.
+The picture contains all settings that move a pin, the table one row for each engine. The metadata of the picture
+contains its data, so a test can detect an outdated one.
 """
 
 import json
 import math
 import re
+import textwrap
 from pathlib import Path
 
 from matplotlib import rc_context
@@ -15,10 +16,11 @@ from matplotlib.figure import Figure
 from compare.claims import Recorded
 from compare.diagnosis.row import Row
 from compare.diagnosis.run import row_of
-from compare.foreign import CASES, recordings
+from compare.foreign import CASES
 from compare.output.figures import paper_style
 from compare.report.at_a_glance import best_of
 from compare.report.matrix import state_of
+from compare.studies.engines.foreign_engines.theory import recorded as pins
 from compare.studies.engines.foreign_engines.theory import recorded_claims
 
 PICTURE, README = Path(__file__).with_name("engines.png"), Path(__file__).parents[1] / "README.md"
@@ -26,7 +28,7 @@ PLACE = re.compile(r"(?s)(?<=<!-- engines -->\n\n).*?(?=\n\n<!-- end -->)")
 COLOURS = {"✓": "#bfe3cf", "?": "#fff3bf", "✗": "#e0796b", "": "white"}
 """From light to dark, so that they also differ in grey."""
 
-ENGINES = tuple((row_of(one), recorded_claims(one)) for one in recordings())  # ours first
+ENGINES = tuple((row_of(one), recorded_claims(one)) for one in pins())  # ours first
 
 
 def law_of(row: Row) -> str:
@@ -41,11 +43,16 @@ def law_of(row: Row) -> str:
     return law.shape.split()[0]
 
 
+def spin_of(row: Row) -> str:
+    """Return the law of a disc that slides and spins."""
+    return re.sub(r"a disc that slides and spins (has |is )?|[;:,].*", "", row.spin[0])
+
+
 def cells() -> dict[str, dict[str, list[str]]]:
     """Return mark, error, order and cost of each motion by engine and setting, and the friction law."""
     table: dict[str, dict[str, list[str]]] = {}
     for row, recorded in ENGINES:
-        found = table[row.engine] = {"law": ["", law_of(row), "", ""]}
+        found = table[row.engine] = {"law": ["", law_of(row), "", ""], "spin": ["", "", "", spin_of(row)]}
         for name, motion in row.motions.items():
             order = f"order {round(motion.order, 1) + 0.0:.1f}" if math.isfinite(motion.order) else ""
             found[name] = [motion.mark, f"{motion.error:.0e}", order, recorded.costs[CASES[name].sentence]]
@@ -60,8 +67,8 @@ def drawn_from() -> str:
 def draw() -> Figure:
     """Return the figure of all settings."""
     table = cells()
-    names = [*CASES, "law"]
-    figure = Figure(figsize=(11.5, 0.36 * len(table) + 0.8), layout="constrained")
+    names = [*CASES, "law", "spin"]
+    figure = Figure(figsize=(13.0, 0.36 * len(table) + 0.8), layout="constrained")
     panel = figure.subplots()
     for line, (engine, found) in enumerate(table.items()):
         for column, name in enumerate(names):
@@ -70,13 +77,16 @@ def draw() -> Figure:
             panel.text(column + 0.06, line + 0.33, mark, va="center", fontfamily="DejaVu Sans", fontsize=9)
             panel.text(column + 0.2 * bool(mark) + 0.06, line + 0.36, error, va="center", fontsize=10)
             panel.text(column + 0.96, line + 0.36, order, va="center", ha="right", fontsize=8, color="0.25")
-            panel.text(column + 0.06, line + 0.77, _short(cost), va="center", fontsize=8, color="0.25")
+            below = 0.5 if name == "spin" else 0.77
+            said = textwrap.fill(_short(cost), 36)
+            panel.text(column + 0.06, line + below, said, va="center", fontsize=8, color="0.25")
         panel.text(-0.06, line + 0.5, engine, va="center", ha="right", fontsize=10)
     for column, case in enumerate(CASES.values()):
         panel.text(column + 0.5, -0.75, case.name, va="bottom", ha="center", fontsize=10.5)
         panel.text(column + 0.5, -0.2, case.truth, va="bottom", ha="center", fontsize=9, color="0.25")
     panel.text(len(CASES) + 0.06, -0.75, "friction law", va="bottom", fontsize=10.5)
-    panel.set(xlim=(-1.6, len(names)), ylim=(len(table), -1.6))
+    panel.text(len(CASES) + 1.06, -0.75, "slide with spin", va="bottom", fontsize=10.5)
+    panel.set(xlim=(-1.6, len(names) + 0.5), ylim=(len(table), -1.6))
     panel.axis("off")
     return figure
 
@@ -94,7 +104,7 @@ def _said(recorded: Recorded) -> str:
 
 SHORTER = {
     r"every body loses (.*) of its speed per second": r"loses \1 of speed per s",
-    r"the friction force on a disc is (.*) too large": r"friction on a disc \1 too large",
+    r"a disc that .* has friction along the impulse that would stop each of . points": "on a disc, it stops each point",
     r"a block that should rest (creeps .*)": r"\1",
     r"its error bar of (.*) exceeds .*": r"error bar of \1",
 }
@@ -105,7 +115,7 @@ def _why(recorded: Recorded) -> list[str]:
     """Return the main clauses of the reasons of ✗, or of ? if there is no ✗."""
     by_mark: dict[str, list[str]] = {"✗": [], "?": []}
     for claim in recorded.claims:
-        why = re.split(r" with | under |, ", recorded.reasons.get(claim.sentence, ""))[0]
+        why = re.split(r" with | under |[,;] ", recorded.reasons.get(claim.sentence, ""))[0]
         for reason, short in SHORTER.items():
             why = re.sub(reason, short, why)
         by_mark.get(state_of(claim).symbol, []).append(why)

@@ -186,12 +186,13 @@ def _of_shares(shares: FloatArray, error: float) -> str:
     if rate := _rate(shares):
         return f"Every joint loses {error_text(100.0 * rate)} % of its speed per second."
     middle, spread = float(np.median(shares)), float(np.ptp(shares))
-    if spread <= max(STEADY * abs(middle - 1.0), DISTINCT * error):
+    if spread <= max(STEADY * abs(middle - 1.0), DISTINCT * error) and abs(middle - 1.0) > error:
         if abs(middle + 1.0) < STEADY:
             return "Friction accelerates the joint."
         return f"The friction moment of a joint that turns is {size_text(middle, error)}."
     inertia, friction, spin, angle = draws().T
-    least, most = (error_text(float(end)) for end in (np.min(shares), np.max(shares)))
+    digits = 2 if spread > STEADY else 4
+    least, most = (error_text(float(end), digits) for end in (np.min(shares), np.max(shares)))
     text = f"Friction of a joint that turns is {least} to {most} times F"
     if all(float(np.ptp(shares[way])) < ALIKE * spread for way in (spin > 0.0, spin < 0.0)):
         return f"{text}: it depends on the direction."

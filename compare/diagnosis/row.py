@@ -132,12 +132,19 @@ class Row:
         return found
 
     def _of_discs(self) -> Iterator[Remark]:
-        law, right = self.law, True
-        if self.patch is not None:
-            text, right = law_of(self.patch, law.strength if law is not None else 1.0)
+        text, right = self.spin
+        if text:
             yield Remark(sentence(text), not right, MOTION if INERTIA in text else DISCS)
         if self.moments is not None and right:  # otherwise they follow from the law
-            yield from wording.of_moments(self.moments, law)
+            yield from wording.of_moments(self.moments, self.law)
+
+    @functools.cached_property
+    def spin(self) -> tuple[str, bool]:
+        """Law of discs that slide and spin in words, or "" if blocks have another law; and whether it is right."""
+        law = self.law
+        if self.patch is None or not (law is None or law.coulomb):
+            return "", True
+        return law_of(self.patch, law.strength if law is not None else 1.0)
 
     @property
     def _explained(self) -> bool:

@@ -188,6 +188,7 @@ class Recording:
     step: float | None  # in s at the usual tolerance; None if the engine has a tolerance
     runs: Mapping[str, FloatArray]
     probes: Mapping[str, Any]  # parts ``compare.diagnosis.findings.PROBES`` as JSON; empty if not recorded
+    claims: Mapping[str, Mapping[str, Any]]  # claims as JSON by study and identity
 
     @property
     def name(self) -> str:
@@ -209,7 +210,8 @@ def recordings() -> tuple[Recording, ...]:
         for setting in file["settings"]:
             runs = {case: np.array(rows, dtype=float) for case, rows in setting["runs"].items()}
             own = {"setting": setting["name"], "says": setting["says"], "step": setting.get("step")}
-            found.append(Recording(**about, **own, runs=runs, probes=setting.get("probes", {})))
+            laws = {"probes": setting.get("probes", {}), "claims": setting.get("claims", {})}
+            found.append(Recording(**about, **own, runs=runs, **laws))
     return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))
 
 

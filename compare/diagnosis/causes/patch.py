@@ -23,6 +23,7 @@ TIMES = np.array([0.0, SETTLES_FOR, SETTLES_FOR + 0.5 * SLIDES_FOR, SETTLES_FOR 
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 HEADING = 0.3  # direction of the slip in rad
 CLOSE = 2e-3  # largest deviation over μN of a law that the engine may have
+KNOWN = 1e-2  # largest error over μN of a disc that is called right
 POINTS = 6
 KINDS = {"ring": "a ring", "points": f"{POINTS} points"}
 SHAFT = 0.01  # largest relative change of the spin by the shaft
@@ -119,6 +120,24 @@ def _on(contact: Contact) -> Wrench:
     return wrench
 
 
+def _stopping(*, by_axis: bool) -> Wrench:
+    """Return the wrench of points with friction along the impulse that would stop each alone, on discs of J = mR².
+
+    ``by_axis`` neglects the coupling of the impulses along the axes of the world.
+    """
+
+    def wrench(motion: FloatArray, _: float) -> tuple[float, float]:
+        slip, rim, angle = motion.tolist()
+        arms = np.exp(1j * (angle + 2.0 * math.pi * np.arange(POINTS) / POINTS))
+        axes = np.full(POINTS, np.exp(-1j * HEADING)) if by_axis else arms
+        places, slips = arms * np.conj(axes), (slip + 1j * rim * arms) * np.conj(axes)
+        stops = slips.real / (1.0 + places.imag**2) + 1j * slips.imag / (1.0 + places.real**2)
+        directions = axes * stops / np.abs(stops)
+        return float(np.mean(directions.real)), float(np.mean((np.conj(arms) * directions).imag))
+
+    return wrench
+
+
 def _ellipsoid(motion: FloatArray, number: float) -> tuple[float, float]:
     slip, rim = float(motion[0]), float(motion[1])
     size = math.hypot(slip, number * rim)
@@ -127,6 +146,10 @@ def _ellipsoid(motion: FloatArray, number: float) -> tuple[float, float]:
 
 def _slides(motion: FloatArray) -> float:
     return 1.0 if motion[0] > CLOSE * SPEED else 0.0
+
+
+def _larger(motion: FloatArray, _: float) -> tuple[float, float]:
+    return (1.0, 0.0) if motion[0] > motion[1] else (0.0, 1.0)
 
 
 def _separate(motion: FloatArray, number: float) -> tuple[float, float]:
@@ -148,7 +171,14 @@ def _laws(right: Contact) -> list[Law]:
     exact = _on(right)
     return [
         *(Law(f"has the friction of {name}", _on(contact)) for name, contact in CONTACTS.items()),
+        Law(
+            "has friction along the impulse that would stop each of 6 points alone", _stopping(by_axis=False)
+        ),
+        Law(
+            "has friction along the impulse that would stop each of 6 points by axis", _stopping(by_axis=True)
+        ),
         Law("has no friction against spin", lambda motion, _: (_slides(motion), 0.0)),
+        Law("has friction against the larger of slide and spin only, a pyramid", _larger),
         Law("has separate limits for slide and spin, μN and {number}·μNR", _separate, (0.01, 3.0)),
         Law("has the friction of an ellipsoid with the limits μN and {number}·μNR", _ellipsoid, (0.01, 3.0)),
         Law(
@@ -189,21 +219,24 @@ def law_of(found: Patch, strength: float) -> tuple[str, bool]:
         own = _deviation(_on(exact), 1.0, motions, wrenches)
         size = f"{error_text(100.0 * own)} % of μN"
         if own > allowed:
-            fits = [(*_fit(law, motions, wrenches), law.bounds is None) for law in _laws(exact)]
-            close = [one for one in fits if one[0] <= allowed]
-            certain = [one for one in close if one[2]] or close  # laws without a free number explain more
-            nearest, closest, _ = min(fits)
+            fits, close = list[tuple[float, str]](), list[tuple[float, str]]()
+            for free in (False, True):  # laws without a free number explain more
+                if not close:
+                    laws = [law for law in _laws(exact) if (law.bounds is not None) == free]
+                    fits += [_fit(law, motions, wrenches) for law in laws]
+                    close = [one for one in fits if one[0] <= allowed]
+            nearest, closest = min(fits)
             rest = f"follows no known law: the closest {closest}, up to {error_text(100.0 * nearest)} % of μN"
-            said = " or ".join(text for _, text, _ in certain) or rest
+            said = " or ".join(text for _, text in close) or rest
             if close and MOMENT in said and abs(found.shaft - 1.0) > CLOSE:
                 said = f"has {1.0 / found.shaft:.3g} times the right {INERTIA}"
             return (
                 f"a disc that slides and spins {said}; it deviates from {KINDS[kind]} by up to {size}",
                 False,
             )
-        right = (
-            right or f"a disc that slides and spins is right to {size}, at {len(RATIOS)} ratios of the two"
-        )
+        least = f"is known only to {error_text(100.0 * found.error)} % of μN"
+        said = f"is right to {size}" if found.error <= KNOWN else least
+        right = right or f"a disc that slides and spins {said}, at {len(RATIOS)} ratios of the two"
     return right, True
 
 

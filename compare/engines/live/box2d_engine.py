@@ -1,7 +1,7 @@
 """Box2D as an engine, by pybox2d, with its friction joints for top-down scenes.
 
 Written for Box2D 2.3, in single precision. See ``TopDown`` in ``setting`` for the bodies. A friction joint bounds the
-length of its impulse, a cone. Its torque limit is 0, because contact is at points.
+length of its impulse, a cone. Its torque limit is 0 for contact at points.
 
 - Bodies must not sleep. Several points need 50 velocity iterations.
 - Box2D's angles grow without bound and lose digits in long spins, so the adapter counts whole turns.
@@ -13,7 +13,7 @@ from dataclasses import replace
 import Box2D
 import numpy as np
 
-from compare.engines.live.setting import Setting, TopDown, inertia_of
+from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of, radius_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS, RECOMMENDED = 50, (8, 3)
@@ -39,7 +39,8 @@ class _World(TopDown):
         self.body.massData = Box2D.b2MassData(mass=system.mass, I=inertia_of(system), center=(0.0, 0.0))
         if disc:
             self.body.angle, self.body.angularVelocity = float(places[2]), float(speeds[2])
-        self.partners = [self.world.CreateKinematicBody() for _ in self.arms]
+        limit = system.friction_force * radius_of(system) if self.patch else 0.0
+        self.partners = [self.world.CreateKinematicBody(angularVelocity=system.disc_speed) for _ in self.arms]
         for arm, partner in zip(self.arms, self.partners, strict=True):
             self.world.CreateFrictionJoint(
                 bodyA=partner,
@@ -47,7 +48,7 @@ class _World(TopDown):
                 localAnchorA=(0.0, 0.0),
                 localAnchorB=(arm.real, arm.imag),
                 maxForce=system.friction_force / len(self.arms),
-                maxTorque=0.0,
+                maxTorque=limit,
             )
 
     def state(self) -> tuple[float, ...]:
@@ -70,12 +71,52 @@ class _World(TopDown):
             self.turns += turn
 
 
+class _Patch(_World):
+    kinds, patch = ("ring",), True
+
+
+class _Joint(JointModel):
+    """A revolute joint with a motor of speed 0, whose torque limit is the friction moment, as in the manual."""
+
+    engine = "Box2D"
+    method = f"Box2D {Box2D.__version__}, semi-implicit Euler, joint motor"
+
+    def build(self, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
+        self.iterations = RECOMMENDED if shipped else (ITERATIONS, 0)
+        self.world = Box2D.b2World(gravity=(0.0, 0.0), doSleep=shipped)
+        self.body = self.world.CreateDynamicBody(angularVelocity=self.spin)
+        self.body.massData = Box2D.b2MassData(mass=1.0, I=self.joint.inertia, center=(0.0, 0.0))
+        self.world.CreateRevoluteJoint(
+            bodyA=self.world.CreateStaticBody(),
+            bodyB=self.body,
+            localAnchorA=(0.0, 0.0),
+            localAnchorB=(0.0, 0.0),
+            enableMotor=True,
+            motorSpeed=0.0,
+            maxMotorTorque=self.joint.friction_moment,
+        )
+        self.first = self.angle
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        self.body.ApplyTorque(torque, True)
+        self.world.Step(h, *self.iterations)
+        return self.first + self.body.angle, self.body.angularVelocity
+
+
 friction_joint = Setting(
     "friction joint",
     "by friction joints, in single precision, with steps of order 1 until accumulated rounding dominates.",
     _World,
     finest=2e-3,
     precision=1e-6,
+    joint=_Joint,
+)
+torque = replace(
+    friction_joint,
+    name="friction joint with torque",
+    says="with a disc on one friction joint with limits of force and torque, in single precision.",
+    model=_Patch,
+    joint=None,
 )
 shipped = replace(
     friction_joint,

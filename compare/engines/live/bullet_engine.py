@@ -20,11 +20,13 @@ import numpy as np
 import pybullet
 
 from compare.engines.live.setting import (
+    JointModel,
     Model,
     Setting,
     inertia_of,
     mobility,
     our_friction,
+    radius_of,
     shaft_torque,
     support_force,
 )
@@ -48,20 +50,12 @@ class _World(Model):
         self.joints = range(self.half)
         self.load = system.friction_force / len(self.arms)
         self.native = friction != "our force"
-        self.client = pybullet.connect(pybullet.DIRECT)
         self.shipped = friction == "as shipped"
-        if not self.shipped:
-            pybullet.setPhysicsEngineParameter(
-                numSolverIterations=ITERATIONS,
-                solverResidualThreshold=0.0,
-                contactSlop=0.0,
-                enableConeFriction=int(friction == "cone"),
-                physicsClientId=self.client,
-            )
+        self._connect(friction)
         # The feet take half of the largest mass that mass and inertia allow.
         feet = self.arms if self.native else []
         mass, inertia = system.mass, inertia_of(system)
-        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if self.half > 2 else mass) / 2.0 / len(self.arms)
+        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if self.arms[0] else mass) / 2.0 / len(self.arms)
         carriage = mass - foot * len(feet), inertia - foot * sum(abs(arm) ** 2 for arm in feet)
         weightless = [(0.0, 0.0)] * (len(self.joints) - 1)
         sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=1.0, physicsClientId=self.client)
@@ -77,9 +71,24 @@ class _World(Model):
             pybullet.resetJointState(self.body, joint, position, speed, physicsClientId=self.client)
         if self.native:
             pybullet.setGravity(0.0, 0.0, -self.load / foot, physicsClientId=self.client)
+            if self.patch:
+                pybullet.changeDynamics(
+                    self.body, self.half, spinningFriction=radius_of(system), physicsClientId=self.client
+                )
             plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=self.client)
             plate = self._body(0.0, [(mass, 1e12 * inertia)], [plane], [0j], [0], ["turn"])
             pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
+
+    def _connect(self, friction: str) -> None:
+        self.client = pybullet.connect(pybullet.DIRECT)
+        if not self.shipped:
+            pybullet.setPhysicsEngineParameter(
+                numSolverIterations=ITERATIONS,
+                solverResidualThreshold=0.0,
+                contactSlop=0.0,
+                enableConeFriction=int(friction == "cone"),
+                physicsClientId=self.client,
+            )
 
     def _body(self, height: float, links: Any, shapes: Any, places: Any, parents: Any, axes: Any) -> int:
         """Return an undamped multibody without motors; ``links`` are pairs of mass and inertia."""
@@ -146,7 +155,39 @@ class _World(Model):
         return forces
 
 
-cone = Setting("cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"})
+class _Patch(_World):
+    kinds, patch = ("ring",), True
+
+
+class _Joint(JointModel, _World):
+    """A revolute joint with a velocity motor, whose force limit is the friction moment."""
+
+    method = f"PyBullet {version('pybullet')}, semi-implicit Euler, joint motor"
+
+    def build(self, state: FloatArray, tolerance: float, *, friction: str) -> None:
+        self.shipped, self.h = friction == "as shipped", 0.0
+        self._connect(friction)
+        inertia = self.joint.inertia
+        self.body = self._body(0.0, [(inertia, inertia)], [-1], [0j], [0], ["turn"])
+        pybullet.resetJointState(self.body, 0, *state.tolist(), physicsClientId=self.client)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        body, client = self.body, self.client
+        if h != self.h:
+            pybullet.setPhysicsEngineParameter(fixedTimeStep=h, physicsClientId=client)
+            motor, self.h = pybullet.VELOCITY_CONTROL, h
+            pybullet.setJointMotorControl2(
+                body, 0, motor, targetVelocity=0.0, force=self.joint.friction_moment, physicsClientId=client
+            )
+        pybullet.setJointMotorControl2(body, 0, pybullet.TORQUE_CONTROL, force=torque, physicsClientId=client)
+        pybullet.stepSimulation(client)
+        angle, spin, *_ = pybullet.getJointState(body, 0, client)
+        return angle, spin
+
+
+cone = Setting(
+    "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, joint=_Joint
+)
 box = Setting(
     "box",
     "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
@@ -158,6 +199,13 @@ shipped = Setting(
     "with all its defaults, which include a damping of the body of 0.04 and a joint speed limit of 100.",
     _World,
     {"friction": "as shipped"},
+    joint=_Joint,
+)
+spinning = Setting(
+    "spinning friction",
+    "with a disc on one contact with spinning friction, and the cone.",
+    _Patch,
+    {"friction": "cone"},
 )
 our_force = Setting(
     "our force",

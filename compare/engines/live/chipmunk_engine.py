@@ -13,7 +13,7 @@ from typing import Any
 
 import pymunk
 
-from compare.engines.live.setting import Setting, TopDown, inertia_of
+from compare.engines.live.setting import JointModel, Setting, TopDown, inertia_of, radius_of
 from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50
@@ -42,6 +42,11 @@ class _Space(TopDown):
             joint = pymunk.PivotJoint(partner, self.body, (0.0, 0.0), (arm.real, arm.imag))
             joint.max_bias, joint.max_force = 0.0, system.friction_force / len(self.arms)
             self.space.add(partner, joint)
+            if self.patch:
+                gear = pymunk.GearJoint(partner, self.body, 0.0, 1.0)
+                gear.max_bias, gear.max_force = 0.0, system.friction_force * radius_of(system)
+                partner.angular_velocity = system.disc_speed
+                self.space.add(gear)
 
     def state(self) -> tuple[float, ...]:
         body = self.body
@@ -62,14 +67,49 @@ class _Space(TopDown):
         pymunk.Body.update_velocity(body, gravity, damping, h)
 
 
+class _Patch(_Space):
+    kinds, patch = ("ring",), True
+
+
+class _Joint(JointModel):
+    """A body with a motor of speed 0, whose force limit is the friction moment."""
+
+    engine = "Chipmunk"
+    method = f"pymunk {pymunk.version}, semi-implicit Euler, motor with a force limit"
+
+    def build(self, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
+        self.space = pymunk.Space()
+        self.body = pymunk.Body(1.0, self.joint.inertia)
+        self.body.angle, self.body.angular_velocity = self.angle, self.spin
+        self.space.add(self.body)
+        self.h = 0.0
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        if h != self.h:  # a motor starts each step with its last impulse, whatever the step
+            self.space.remove(*self.space.constraints)
+            motor = pymunk.SimpleMotor(self.space.static_body, self.body, 0.0)
+            motor.max_force, self.h = self.joint.friction_moment, h
+            self.space.add(motor)
+        self.body.torque = torque
+        self.space.step(h)
+        return self.body.angle, self.body.angular_velocity
+
+
 pivot = Setting(
     "pivot joint",
     "by pivot joints with a force limit, as in its top-down tank demo, with steps of order 1.",
     _Space,
+    joint=_Joint,
+)
+gear = Setting(
+    "pivot and gear joint",
+    "with a disc on one pivot joint and one gear joint, whose force limits stand for friction in the tank demo.",
+    _Patch,
 )
 shipped = Setting(
     "as shipped",
     "by pivot joints with a force limit, with ten iterations, its default, and forces set before each step.",
     _Space,
     {"shipped": True},
+    joint=_Joint,
 )

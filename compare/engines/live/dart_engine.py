@@ -16,7 +16,7 @@ from typing import Any
 import dartpy
 import numpy as np
 
-from compare.engines.live.setting import Model, Setting, inertia_of, mobility, our_friction
+from compare.engines.live.setting import JointModel, Model, Setting, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 SOLVER_TOLERANCE = 1e-10
@@ -61,9 +61,7 @@ class _Model(Model):
 def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
     dynamics, world = dartpy.dynamics, dartpy.simulation.World()
     if solver != SHIPPED:
-        asleep = dartpy.simulation.DeactivationOptions()
-        asleep.mEnabled = False
-        world.setDeactivationOptions(asleep)
+        _keep_awake(world)
         _choose(solver, world.getConstraintSolver())
     world.setCollisionDetector(dartpy.simulation.CollisionDetectorType.DART)
     inertia, n, share = inertia_of(system), len(arms), SHARE if solver else 0.0
@@ -100,6 +98,39 @@ def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
     return world, joint
 
 
+class _Joint(JointModel):
+    """A revolute joint with DART's Coulomb friction."""
+
+    engine = "DART"
+    method = f"DART {dartpy.__version__}, Coulomb friction of a joint"
+
+    def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:
+        self.world, pieces = dartpy.simulation.World(), dartpy.dynamics.Skeleton("joint")
+        if solver != SHIPPED:
+            _keep_awake(self.world)
+            _choose(solver, self.world.getConstraintSolver())
+        axis = dartpy.dynamics.RevoluteJointProperties()
+        axis.mAxis = [0.0, 0.0, 1.0]
+        self.hinge, body = pieces.createRevoluteJointAndBodyNodePair(None, axis)
+        body.setInertia(_inertia(self.joint.inertia, self.joint.inertia))
+        self.hinge.setCoulombFriction(0, self.joint.friction_moment)
+        self.hinge.setPosition(0, self.angle)
+        self.hinge.setVelocity(0, self.spin)
+        self.world.addSkeleton(pieces)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        self.world.setTimeStep(h)
+        self.hinge.setCommand(0, torque)
+        self.world.step(False)
+        return self.hinge.getPosition(0), self.hinge.getVelocity(0)
+
+
+def _keep_awake(world: Any) -> None:
+    asleep = dartpy.simulation.DeactivationOptions()
+    asleep.mEnabled = False
+    world.setDeactivationOptions(asleep)
+
+
 def _choose(solver: str, constraints: Any) -> None:
     second, kinds = constraints.getSecondaryBoxedLcpSolver(), dartpy.constraint
     constraints.setSecondaryBoxedLcpSolver(None)
@@ -132,7 +163,7 @@ def _touching(body: Any, shape: Any, height: float) -> None:
     surface.setRestitutionCoeff(0.0)
 
 
-nsgs = Setting("NSGS", "with the cone, by nonsmooth Gauss–Seidel.", _Model, {"solver": "nsgs"})
+nsgs = Setting("NSGS", "with the cone, by nonsmooth Gauss–Seidel.", _Model, {"solver": "nsgs"}, joint=_Joint)
 fbf = Setting("FBF", "with the cone, by forward-backward-forward splitting.", _Model, {"solver": "fbf"})
 dantzig = Setting("Dantzig", "with a box in place of the cone, by pivoting.", _Model, {"solver": "dantzig"})
 shipped = Setting(
@@ -140,6 +171,7 @@ shipped = Setting(
     "with all its defaults: Dantzig's solver, a box, another solver if it fails, and slow bodies fall asleep.",
     _Model,
     {"solver": SHIPPED},
+    joint=_Joint,
 )
 pgs = Setting("PGS", "with a box in place of the cone, by projected Gauss–Seidel.", _Model, {"solver": "pgs"})
 our_force = Setting(

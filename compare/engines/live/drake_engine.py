@@ -19,7 +19,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydrake.geometry import AddContactMaterial, Box, ProximityProperties, Sphere
+from pydrake.geometry import (
+    AddCompliantHydroelasticPropertiesForHalfSpace,
+    AddContactMaterial,
+    AddRigidHydroelasticProperties,
+    Box,
+    Cylinder,
+    HalfSpace,
+    ProximityProperties,
+    Sphere,
+)
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
 from pydrake.multibody.tree import (
@@ -34,7 +43,16 @@ from pydrake.multibody.tree import (
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, our_friction, rate
+from compare.engines.live.setting import (
+    JointModel,
+    Model,
+    Setting,
+    contact_arms,
+    inertia_of,
+    our_friction,
+    radius_of,
+    rate,
+)
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import SimulationError
 
@@ -42,17 +60,27 @@ DEPTH = 1e3
 """Depth of the spheres in the plate in m. SAP lets sliding bodies rise by μ·h times the slip (μ = 1): far less."""
 
 RADIUS = 1e-3  # radius of the spheres in m
+FACET = 2.0 * math.pi / 100
+"""Angle in rad of an edge of the cylinder's mesh."""
+
+STIFF = 1e9
+"""Gain of a motor in 1/s, times the inertia."""
+
 PLATE = 1e5  # edge length of the plate in m
 
 
 @dataclass(frozen=True)
 class _Scheme:
-    """A discrete ``solver`` or an ``integrator``, with a heavy or a ``driven`` master."""
+    """A discrete ``solver`` or an ``integrator``, with a heavy or a ``driven`` master.
+
+    A ``hydroelastic`` contact is the flat end of a cylinder, which stands for a ring.
+    """
 
     solver: str = ""
     integrator: str = ""
     driven: bool = False
     our_force: bool = False
+    hydroelastic: bool = False
 
 
 class _Plant:
@@ -64,7 +92,8 @@ class _Plant:
         self.epsilon = 1e-3 * fastest * step if step else 1e-2 * math.sqrt(tolerance)
         if scheme.solver == "sap":
             self.epsilon = 5e-4 * step * system.friction_force / system.mass
-        config = MultibodyPlantConfig(time_step=step, contact_model="point", use_sampled_output_ports=False)
+        contact = "hydroelastic" if scheme.hydroelastic else "point"
+        config = MultibodyPlantConfig(time_step=step, contact_model=contact, use_sampled_output_ports=False)
         config.stiction_tolerance = self.epsilon or 1.0
         if step:
             config.discrete_contact_approximation, config.sap_near_rigid_threshold = scheme.solver, 0.0
@@ -87,10 +116,10 @@ class _Plant:
         spring = (none, none, np.full(3, system.stiffness), none)
         self.plant.AddForceElement(LinearBushingRollPitchYaw(rest, body.body_frame(), *spring))
         if not scheme.our_force and system.friction_force > 0.0:
-            self._touch(body, master)
+            (self._touch_flat if scheme.hydroelastic else self._touch)(body, master)
         if scheme.driven and step:
             motor = self.plant.AddJointActuator("motor", self.master)
-            motor.set_controller_gains(PdControllerGains(p=0.0, d=1e9 * inertia * fastest))
+            motor.set_controller_gains(PdControllerGains(p=0.0, d=STIFF * inertia * fastest))
         self.plant.Finalize()
         steady = np.zeros(self.plant.num_velocities())
         steady[self.joint.velocity_start() + 2] = shaft * shaft_speed
@@ -124,6 +153,20 @@ class _Plant:
         for i, arm in enumerate(arms):
             place = RigidTransform([arm.real, arm.imag, RADIUS - DEPTH])
             self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
+
+    def _touch_flat(self, body: Any, master: Any) -> None:
+        """Press a rigid cylinder into a soft half-space, whose pressure is modulus times depth over thickness."""
+        radius, (hard, soft) = radius_of(self.system), (ProximityProperties(), ProximityProperties())
+        for material in (hard, soft):
+            AddContactMaterial(0.0, None, CoulombFriction(1.0, 1.0), material)
+            material.AddProperty("material", "relaxation_time", 0.0)
+        sides = 2.0 * math.pi / FACET
+        modulus = self.system.friction_force / (0.5 * sides * math.sin(FACET) * radius**2)
+        AddCompliantHydroelasticPropertiesForHalfSpace(1.0, modulus, soft)
+        AddRigidHydroelasticProperties(FACET * radius, hard)
+        height = RigidTransform([0.0, 0.0, radius - 1.0])  # the flat end is 1 m deep
+        self.plant.RegisterCollisionGeometry(master, RigidTransform(), HalfSpace(), "plate", soft)
+        self.plant.RegisterCollisionGeometry(body, height, Cylinder(radius, 2.0 * radius), "foot", hard)
 
     def start(self, state: FloatArray) -> None:
         """Set the initial state."""
@@ -201,6 +244,48 @@ class _Motion(Model):
         return steps, steps
 
 
+class _Patch(_Motion):
+    kinds, patch = ("ring",), True
+
+
+class _Joint(JointModel):
+    """A joint with a motor of speed 0, whose effort limit is the friction moment, because joints have no friction."""
+
+    engine = "Drake"
+
+    def build(self, state: FloatArray, tolerance: float, *, scheme: _Scheme) -> None:
+        self.solver, self.h, self.method = scheme.solver, 0.0, f"Drake {scheme.solver}, motor"
+
+    def _start(self, h: float) -> None:
+        """Build a plant that starts here, because Drake fixes the step of a plant."""
+        builder, inertia, self.h, self.steps = DiagramBuilder(), self.joint.inertia, h, 0
+        config = MultibodyPlantConfig(time_step=h, use_sampled_output_ports=False)
+        config.discrete_contact_approximation, config.sap_near_rigid_threshold = self.solver, 0.0
+        plant, _ = AddMultibodyPlant(config, builder)
+        body = plant.AddRigidBody("body", SpatialInertia(inertia, np.zeros(3), UnitInertia(1.0, 1.0, 1.0)))
+        plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
+        axle = RevoluteJoint("axle", plant.world_frame(), body.body_frame(), (0.0, 0.0, 1.0))
+        self.axle = plant.AddJoint(axle)
+        motor = plant.AddJointActuator("motor", self.axle, self.joint.friction_moment)
+        motor.set_controller_gains(PdControllerGains(p=0.0, d=STIFF * inertia))
+        plant.Finalize()
+        self.simulator = Simulator(builder.Build())
+        self.context = plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
+        plant.get_desired_state_input_port(motor.model_instance()).FixValue(self.context, np.zeros(2))
+        self.torque = plant.get_applied_generalized_force_input_port()
+        self.axle.set_angle(self.context, self.angle)
+        self.axle.set_angular_rate(self.context, self.spin)
+        self.simulator.Initialize()
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        if h != self.h:
+            self._start(h)
+        self.steps += 1
+        self.torque.FixValue(self.context, [torque])
+        self.simulator.AdvanceTo((self.steps - 0.5) * h)  # completes all steps, whatever the rounding
+        return self.axle.get_angle(self.context), self.axle.get_angular_rate(self.context)
+
+
 tamsi = Setting(
     "TAMSI",
     "with TAMSI and steps of order 1. Drake plans to remove it.",
@@ -213,6 +298,7 @@ sap = Setting(
     _Motion,
     {"scheme": _Scheme("sap", driven=True)},
     finest=2e-3,
+    joint=_Joint,
 )
 lagged = Setting(
     "lagged",
@@ -220,6 +306,14 @@ lagged = Setting(
     '"similar" differs from it only if normal forces change, so its results are the same here.',
     _Motion,
     {"scheme": _Scheme("lagged", driven=True)},
+    finest=2e-3,
+    joint=_Joint,
+)
+hydroelastic = Setting(
+    "hydroelastic",
+    "with a disc whose flat face is a hydroelastic contact, by SAP and steps of order 1.",
+    _Patch,
+    {"scheme": _Scheme("sap", driven=True, hydroelastic=True)},
     finest=2e-3,
 )
 cenic = Setting(

@@ -25,13 +25,23 @@ class Installed(NamedTuple):
 
 
 INSTALLED = {
-    "mujoco": Installed("MuJoCo", ("ellipse", "ellipse-rk4", "pyramid", "shipped", "our-force"), "mujoco"),
+    "mujoco": Installed(
+        "MuJoCo",
+        (
+            *("ellipse", "ellipse-rk4", "elliptic", "pyramid", "shipped"),
+            *("condim-4", "condim-6", "condim-4-shipped", "our-force"),
+        ),
+        "mujoco",
+    ),
     "bullet": Installed(
-        "Bullet", ("cone", "box", "shipped", "our-force"), "pybullet", "Linux; elsewhere pip compiles it"
+        "Bullet",
+        ("cone", "box", "shipped", "spinning", "our-force"),
+        "pybullet",
+        "Linux; elsewhere pip compiles it",
     ),
     "drake": Installed(
         "Drake",
-        ("tamsi", "sap", "lagged", "cenic", "runge-kutta", "our-force"),
+        ("tamsi", "sap", "lagged", "hydroelastic", "cenic", "runge-kutta", "our-force"),
         "drake",
         "Linux, and macOS with newer Pythons; none for Windows",
     ),
@@ -41,8 +51,8 @@ INSTALLED = {
         "dartpy",
         "Linux, and from Python 3.12 on macOS and Windows",
     ),
-    "chipmunk": Installed("Chipmunk", ("pivot", "shipped"), "pymunk"),
-    "box2d": Installed("Box2D", ("friction-joint", "shipped"), "box2d"),
+    "chipmunk": Installed("Chipmunk", ("pivot", "shipped", "gear"), "pymunk"),
+    "box2d": Installed("Box2D", ("friction-joint", "shipped", "torque"), "box2d"),
     "ode": Installed(
         "ODE",
         ("along-slip", "shipped"),
@@ -69,7 +79,7 @@ def installed_engine(name: str, setting: str) -> Engine:
     return Engine(
         f"{name}:{setting}" if setting != known.settings[0] else name,
         ByName(module, function),
-        kinds=simulate.model.kinds,
+        kinds=simulate.kinds,
         nonlinear=not simulate.model.linear,
         phases=False,
         precision=simulate.precision,

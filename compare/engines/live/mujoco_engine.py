@@ -30,7 +30,15 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from compare.engines.live.setting import Model, Setting, inertia_of, mobility, our_friction
+from compare.engines.live.setting import (
+    JointModel,
+    Model,
+    Setting,
+    inertia_of,
+    mobility,
+    our_friction,
+    radius_of,
+)
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
@@ -46,16 +54,17 @@ class _Contact:
     size: float = 1.0
     plate: float = 1e2
     pair: str = ""
+    condim: int = 3
 
     @classmethod
-    def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
+    def rigid(cls, cone: str, friction_rate: float, iterations: int, condim: int = 3) -> _Contact:
         """Return a contact that converges to Coulomb's law.
 
         Feet and plate are much larger than the vertical motion of a foot, so it does not affect horizontal motion.
         """
         pair = 'margin="5e5" solimp="0.9999 0.9999 1 0.5 2" solref="0 -1" solreffriction="0 -1"'
         option = f'cone="{cone}" iterations="{iterations}" tolerance="0"'
-        return cls(option, friction_rate, gravity=math.inf, size=1e6, plate=1e12, pair=pair)
+        return cls(option, friction_rate, gravity=math.inf, size=1e6, plate=1e12, pair=pair, condim=condim)
 
 
 class _Model(Model):
@@ -112,19 +121,51 @@ class _Model(Model):
         data.qfrc_passive += our_friction(self.system, self.arms, state, self.epsilon)
 
 
+class _Patch(_Model):
+    kinds, patch = ("ring",), True
+
+
+class _Joint(JointModel):
+    """A hinge with ``frictionloss``."""
+
+    engine = "MuJoCo"
+    method = f"MuJoCo {mujoco.__version__}, Euler, frictionloss"
+
+    def build(self, state: FloatArray, tolerance: float, *, contact: _Contact, **_: Any) -> None:
+        joint, self.contact = self.joint, contact
+        rigid = 'solimpfriction="0.9999 0.9999 1 0.5 2"' if contact.friction_rate else ""
+        flag = '<flag refsafe="disable"/>' if contact.friction_rate else ""
+        self.model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+            <option gravity="0 0 0" {contact.option}>{flag}</option>
+            <worldbody><body>
+                <inertial pos="0 0 0" mass="1" diaginertia="{3 * f" {joint.inertia!r}"}"/>
+                <joint type="hinge" axis="0 0 1" frictionloss="{joint.friction_moment!r}" {rigid}/>
+            </body></worldbody></mujoco>""")
+        self.data = mujoco.MjData(self.model)
+        (self.data.qpos[0],), (self.data.qvel[0],) = np.split(state, 2)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        self.model.opt.timestep = h
+        if self.contact.friction_rate:
+            self.model.dof_solref[0] = 0.0, -1.0 / h
+        self.data.qfrc_applied[0] = torque
+        mujoco.mj_step(self.model, self.data)
+        return float(self.data.qpos[0]), float(self.data.qvel[0])
+
+
 def _xml(system: System, arms: list[complex], option: str, contact: _Contact | None, turns: bool) -> str:
     """Return the model, with joints in this order: pin or disc, feet, plate."""
-    disc = isinstance(system, DiscOnDisc)
+    radius = radius_of(system) or 1.0
     inertia = inertia_of(system)
     feet, touch = (arms, contact) if contact else ([], _Contact())
     size, rigid = touch.size, touch.friction_rate > 0.0 or not contact
     # The feet take half of the largest mass that mass and inertia allow.
-    foot = min(system.mass, inertia / abs(arms[0]) ** 2 if disc else system.mass) / 2.0 / len(arms)
+    foot = min(system.mass, inertia / abs(arms[0]) ** 2 if arms[0] else system.mass) / 2.0 / len(arms)
     spin = 0.1 * inertia / len(arms)
     mass = system.mass - len(feet) * foot
     inertia -= sum(foot * abs(arm) ** 2 + spin for arm in feet)
     load = system.friction_force / len(arms)
-    mu = max(LEAST_COEFFICIENT, load / (foot * touch.gravity))
+    mu = max(LEAST_COEFFICIENT / min(radius, 1.0), load / (foot * touch.gravity))
     support = f'stiffness="{system.stiffness!r}" damping="{system.damping!r}"'
     turn = (
         f'<joint type="hinge" axis="0 0 1" damping="{system.shaft_damping!r}"/>'
@@ -138,7 +179,7 @@ def _xml(system: System, arms: list[complex], option: str, contact: _Contact | N
         for i, arm in enumerate(feet)
     )
     pairs = "".join(
-        f'<pair geom1="plate" geom2="{i}" condim="3" friction="{mu} {mu}" {touch.pair}/>'
+        f'<pair geom1="plate" geom2="{i}" condim="{touch.condim}" friction="{mu} {mu} {mu * radius}" {touch.pair}/>'
         for i in range(len(feet))
     )
     hinge = f'<joint type="hinge" axis="0 0 1" armature="{touch.plate * system.mass}"/>' if turns else ""
@@ -172,6 +213,7 @@ ellipse = Setting(
     "with the elliptic cone and semi-implicit Euler steps, of order 1 in slip and of order 2 in stick.",
     _Model,
     {"contact": _Contact.rigid("elliptic", 2.0, 10), "friction": "elliptic cone"},
+    joint=_Joint,
 )
 ellipse_rk4 = Setting(
     "elliptic cone, RK4",
@@ -191,6 +233,31 @@ shipped = Setting(
     "with all its defaults: the pyramid, and soft contact that creeps under any load at any step.",
     _Model,
     {"contact": _Contact(), "friction": "as shipped"},
+    joint=_Joint,
+)
+elliptic = Setting(
+    "cone=elliptic alone",
+    "with the elliptic cone and otherwise all its defaults: soft contact, which creeps at any step.",
+    _Model,
+    {"contact": _Contact('cone="elliptic"'), "friction": "elliptic cone, soft contact"},
+)
+condim_4 = Setting(
+    "condim 4",
+    "with a disc on one contact of condim 4, with friction against spin, in the elliptic cone and rigid contact.",
+    _Patch,
+    {"contact": _Contact.rigid("elliptic", 2.0, 10, condim=4), "friction": "condim 4"},
+)
+condim_6 = Setting(
+    "condim 6",
+    "with a disc on one contact of condim 6, which also opposes rolling.",
+    _Patch,
+    {"contact": _Contact.rigid("elliptic", 2.0, 10, condim=6), "friction": "condim 6"},
+)
+condim_4_shipped = Setting(
+    "condim 4, as shipped",
+    "with a disc on one contact of condim 4, in the default pyramid and soft contact.",
+    _Patch,
+    {"contact": _Contact(condim=4), "friction": "condim 4"},
 )
 our_force = Setting(
     "our force",

@@ -14,8 +14,11 @@ from importlib.metadata import version
 import numpy as np
 import ode
 
-from compare.engines.live.setting import Model, Setting, inertia_of, shaft_torque, support_force
+from compare.engines.live.setting import JointModel, Model, Setting, inertia_of, shaft_torque, support_force
 from reference_model.systems import FloatArray
+
+FMAX = 5
+"""``dParamFMax`` of ODE 0.16; ``ode.ParamFMax`` of Py3ODE 1.2 is the number of an older ODE, which has no effect."""
 
 
 class _World(Model):
@@ -68,10 +71,35 @@ class _World(Model):
         ode.ContactJoint(self.world, self.contacts, contact).attach(self.body, self.plate)
 
 
+class _Joint(JointModel):
+    """A hinge with a motor of speed 0, whose force limit is the friction moment."""
+
+    engine = "ODE"
+    method = f"ODE by Py3ODE {version('Py3ODE')}, semi-implicit Euler, hinge motor"
+
+    def build(self, state: FloatArray, tolerance: float, *, along_slip: bool) -> None:
+        self.world, mass, inertia = ode.World(), ode.Mass(), self.joint.inertia
+        self.body, self.hinge = ode.Body(self.world), ode.HingeJoint(self.world)
+        mass.setParameters(inertia, 0.0, 0.0, 0.0, *[inertia] * 3, 0.0, 0.0, 0.0)
+        self.body.setMass(mass)
+        self.body.setAngularVel((0.0, 0.0, self.spin))
+        self.hinge.attach(self.body, ode.environment)
+        self.hinge.setAnchor((0.0, 0.0, 0.0))
+        self.hinge.setAxis((0.0, 0.0, 1.0))
+        self.hinge.setParam(FMAX, self.joint.friction_moment)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        self.body.addTorque((0.0, 0.0, torque))
+        self.world.step(h)
+        spin = float(self.body.getAngularVel()[2])
+        return self.angle + h * spin, spin
+
+
 along_slip = Setting(
     "along the slip",
     "with friction along the slip alone, by fdir1 and a mu2 of 0, which is Coulomb's cone with steps of order 1.",
     _World,
     {"along_slip": True},
+    joint=_Joint,
 )
-shipped = Setting("as shipped", "with its default box.", _World, {"along_slip": False})
+shipped = Setting("as shipped", "with its default box.", _World, {"along_slip": False}, joint=_Joint)

@@ -18,7 +18,9 @@ from reference_model.systems import (
     checked_state,
     checked_times,
     checked_tolerance,
+    finite_numbers,
 )
+from reference_model.systems.joint import AnySystem, FrictionJoint
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 
@@ -30,7 +32,8 @@ class Model:
 
     ``arms`` are the contact points, ``half`` is the number of coordinates, ``method`` names integrator and contact,
     and ``epsilon`` is the slip speed in m/s that regularises the friction law. A ``linear`` model has springs without
-    hardening and stop.
+    hardening and stop. In a ``patch``, one contact with the engine's own friction against spin stands for a ring; its
+    moment alone is at most μN·R.
     """
 
     engine = ""
@@ -38,11 +41,12 @@ class Model:
     method = ""
     most_points = math.inf
     linear = True
+    patch = False
     epsilon = 0.0
 
     def __init__(self, system: System, state: FloatArray, tolerance: float, **options: Any) -> None:
         self.system, self.half = system, len(state) // 2
-        self.arms = contact_arms(self.engine, system, self.most_points)
+        self.arms = [0j] if self.patch else contact_arms(self.engine, system, self.most_points)
         self.build(state, tolerance, **options)
 
     def build(self, state: FloatArray, tolerance: float, *_: Any, **options: Any) -> None:
@@ -61,9 +65,41 @@ class Model:
         """Release the engine's resources."""
 
 
+class JointModel(Model):
+    """A body on a hinge, with the engine's own friction in the joint; ``start`` is the first time in s.
+
+    Spring, damper and applied moment are a torque that is set before each step. The applied moment is that of
+    mid-step.
+    """
+
+    kinds: tuple[str, ...] = ("joint",)
+
+    def __init__(
+        self, joint: FrictionJoint, state: FloatArray, tolerance: float, start: float, **options: Any
+    ) -> None:
+        if joint.static_ratio > 1.0:
+            raise UnsupportedSystemError(f"{self.engine} has one friction moment at rest and in motion")
+        self.joint, self.time = joint, start
+        self.angle, self.spin = map(float, state)
+        self.build(state, tolerance, **options)
+
+    def turn(self, torque: float, h: float) -> tuple[float, float]:
+        """Take a step of ``h`` s under ``torque`` in N m, and return angle and spin."""
+        raise NotImplementedError
+
+    def advance(self, h: float, number: int) -> FloatArray:
+        """Take ``number`` steps of ``h`` s, and return the state."""
+        joint = self.joint
+        for _ in range(number):
+            spring = joint.stiffness * (self.angle - joint.offset) + joint.damping * self.spin
+            self.angle, self.spin = self.turn(joint.applied(self.time + 0.5 * h) - spring, h)
+            self.time += h
+        return np.array([self.angle, self.spin])
+
+
 @dataclass(frozen=True)
 class Setting:
-    """One setting of an engine, callable as the ``simulate`` of any engine.
+    """One setting of an engine, callable as the ``simulate`` of any engine; ``joint`` is its model of joints.
 
     Steps last ``step`` s, if given, else 0.1·tolerance^(1/3) / max(k, ω), which halves first-order errors between the
     tolerances of an estimate, but at least ``finest`` / max(k, ω). ``step`` is None for an integrator with error
@@ -77,10 +113,16 @@ class Setting:
     finest: float = 0.0  # smallest step in units of 1/max(k, ω)
     step: float | None = 2e-3
     precision: float = 0.0
+    joint: type[JointModel] | None = None
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of systems that the setting simulates."""
+        return self.model.kinds + (self.joint.kinds if self.joint else ())
 
     def __call__(
         self,
-        system: System,
+        system: AnySystem,
         initial_state: ArrayLike,
         times: ArrayLike,
         *,
@@ -88,14 +130,17 @@ class Setting:
         step: float | None = None,
     ) -> Trajectory:
         """Return the motion."""
-        state, grid = checked_state(system, initial_state), checked_times(times)
-        tolerance, engine = checked_tolerance(tolerance), self.model.engine
-        if self.model.linear and not system.linear_support:
-            raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
+        grid, tolerance, engine = checked_times(times), checked_tolerance(tolerance), self.model.engine
+        if isinstance(system, FrictionJoint):
+            state = finite_numbers("initial_state", initial_state)
+        else:
+            state = checked_state(system, initial_state)
+            if self.model.linear and not system.linear_support:
+                raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
         longest = step or max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
         states, steps = [state], 0
         began = time.perf_counter()
-        model = self.model(system, state, tolerance, **self.options)
+        model = self._model(system, state, tolerance, float(grid[0]))
         try:
             for i, interval in enumerate(np.diff(grid).tolist(), 1):
                 number = math.ceil(interval / longest * (1.0 - 1e-9))
@@ -111,6 +156,13 @@ class Setting:
         solution = Solution(model.method, tolerance, *model.work(steps), wall, model.epsilon)
         phases = (Phase("slip", float(grid[0]), float(grid[-1]), state),)
         return Trajectory(system, grid, np.array(states), phases, solution)
+
+    def _model(self, system: AnySystem, state: FloatArray, tolerance: float, start: float) -> Model:
+        if not isinstance(system, FrictionJoint):
+            return self.model(system, state, tolerance, **self.options)
+        if self.joint is None:
+            raise UnsupportedSystemError(f"{self.model.engine}, {self.name}, does not simulate a joint")
+        return self.joint(system, state, tolerance, start, **self.options)
 
 
 def contact_arms(engine: str, system: System, most: float = math.inf) -> list[complex]:
@@ -130,8 +182,10 @@ def contact_arms(engine: str, system: System, most: float = math.inf) -> list[co
     return [cmath.rect(system.contact_radius, 2.0 * math.pi * i / n) for i in range(n)]
 
 
-def rate(system: System) -> float:
-    """Return max(k, ω) in 1/s, or 1/s if both are zero."""
+def rate(system: AnySystem) -> float:
+    """Return max(k, ω) in 1/s, of a joint the fastest rate of spring and damper, or 1/s if both are zero."""
+    if isinstance(system, FrictionJoint):
+        return max(math.sqrt(system.stiffness / system.inertia), system.damping / system.inertia) or 1.0
     return max(system.natural_frequency, abs(system.disc_speed)) or 1.0
 
 
@@ -144,6 +198,11 @@ def mobility(system: System) -> float:
 def inertia_of(system: System) -> float:
     """Return J, or the mass of a pin, which does not turn."""
     return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
+
+
+def radius_of(system: System) -> float:
+    """Return R, or 0 of a pin."""
+    return system.contact_radius if isinstance(system, DiscOnDisc) else 0.0
 
 
 def shaft_torque(system: System, spin: float) -> float:

@@ -1,6 +1,6 @@
 """Measurements that several studies make in the same way."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,8 +9,20 @@ from numpy.typing import ArrayLike
 
 from compare.claims import Measured, Measurement, refined
 from compare.engines import Engine
+from compare.foreign import Recording
+from compare.report.matrix import State
 from reference_model.formulas.pin import semicircle_residual
 from reference_model.systems import FloatArray, PinOnDisc, System
+
+
+def recorded_cells(
+    recording: Recording, study: str, claims: Sequence[str], words: Callable[[Mapping[str, Any]], str]
+) -> tuple[str, ...]:
+    """Return the marks of a setting's recorded claims, each with ``words`` about the claim."""
+    found = [recording.claims[study].get(f"{study}/{claim}") for claim in claims]
+    return tuple(
+        f"{State(claim['verdict']).symbol} {words(claim)}" if claim else "not simulated" for claim in found
+    )
 
 
 def compared(predicted: ArrayLike, found: Measurement, **more: Any) -> Measured:

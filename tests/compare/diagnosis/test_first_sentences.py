@@ -62,7 +62,7 @@ def turned_with(factor):
 
 
 def sliding_disc(name, law):
-    """Return an engine of discs with the force and moment/R ``law(slip, rim speed, size of both)`` over μN."""
+    """Return an engine of discs with the force and moment/R ``law(slip, rim speed, size of both, angle)`` over μN."""
 
     def simulate(system, start, times, *, tolerance):
         radius = system.contact_radius
@@ -71,7 +71,7 @@ def sliding_disc(name, law):
             x, y, _, vx, vy, spin = state.tolist()
             slip = complex(vx, vy) - 1j * system.disc_speed * complex(x, y)
             rim = radius * (spin - system.disc_speed)
-            force, moment = law(slip, rim, max(math.hypot(abs(slip), rim), 1e2 * tolerance))
+            force, moment = law(slip, rim, max(math.hypot(abs(slip), rim), 1e2 * tolerance), state[2])
             a = (-system.friction_force * force - system.stiffness * complex(x, y)) / system.mass
             moment = system.friction_force * radius * moment + system.shaft_damping * (
                 spin - system.shaft_speed
@@ -93,6 +93,24 @@ def disc(name, kind, change):
 def along(slip):
     """Return the direction of a slip, and nearly zero for spin alone."""
     return slip / max(abs(slip), 1e-6)
+
+
+def stopped_alone(slip, rim, size, angle):
+    """Return friction at six points along the impulses that would stop them, with twice the tangential mobility."""
+    arms = np.exp(1j * (angle + np.pi / 3.0 * np.arange(6)))
+    local = (slip + 1j * rim * arms) * np.conj(arms)
+    local = local.real + 0.5j * local.imag
+    local /= np.maximum(np.abs(local), 1e-3 * size)
+    return np.mean(arms * local), np.mean(local.imag)
+
+
+def stopped_by_axis(slip, rim, size, angle):
+    """Return the same friction without the coupling of the impulses along x and y."""
+    arms = np.exp(1j * (angle + np.pi / 3.0 * np.arange(6)))
+    speeds = slip + 1j * rim * arms
+    forces = speeds.real / (1.0 + arms.imag**2) + 1j * speeds.imag / (1.0 + arms.real**2)
+    forces /= np.maximum(np.abs(forces), 1e-3 * size)
+    return np.mean(forces), np.mean((np.conj(arms) * forces).imag)
 
 
 MU = "the coefficient μ is"
@@ -200,15 +218,31 @@ WRONG = [
     ),
     # discs
     (
-        sliding_disc("ellipsoid", lambda u, w, size: (u / size, w / size)),
+        sliding_disc("ellipsoid", lambda u, w, size, _: (u / size, w / size)),
         "of an ellipsoid with the limits μN and 1·μNR",
     ),
     (
-        sliding_disc("separate", lambda u, w, _: (along(u), 2.0 / 3.0 * float(np.sign(w)))),
+        sliding_disc("separate", lambda u, w, *_: (along(u), 2.0 / 3.0 * float(np.sign(w)))),
         "separate limits for slide and spin, μN and 0.667·μNR; it deviates from a ring by up to 87 % of μN",
     ),
+    (
+        sliding_disc(
+            "larger", lambda u, w, *_: (along(u), 0.0) if abs(u) > abs(w) else (0.0, float(np.sign(w)))
+        ),
+        "friction against the larger of slide and spin only, a pyramid; it deviates from a ring",
+    ),
+    (
+        sliding_disc("stopped", stopped_alone),
+        "along the impulse that would stop each of 6 points alone",
+        "or",
+    ),
+    (
+        sliding_disc("by axis", stopped_by_axis),
+        "along the impulse that would stop each of 6 points by axis",
+        "or",
+    ),
     (sliding_disc("no spin friction", lambda u, *_: (along(u), 0.0)), "no friction against spin; it", "or"),
-    (sliding_disc("viscous spin", lambda u, w, _: (along(u), w)), "viscous friction against spin, 1 s/m"),
+    (sliding_disc("viscous spin", lambda u, w, *_: (along(u), w)), "viscous friction against spin, 1 s/m"),
     (
         disc("four", "ring", lambda _: {"contact_points": 4}),
         "the friction of 4 points; it deviates from a ring",

@@ -40,6 +40,13 @@ SOUND = {
     "single precision": engine("single", changed(lambda states: states.astype(np.float32))),
 }
 
+
+def in_eight_bits(joint, *_):
+    """Return the friction/F of an engine that stores the inertia with eight significant bits, as Havok seems to."""
+    fraction, _ = math.frexp(joint.inertia)
+    return fraction / (round(fraction * 2**8) / 2**8)
+
+
 WHOLE = "Not Coulomb friction in a joint: friction of a joint that turns is "
 LATE = "Not Coulomb friction in a joint: a joint breaks away "
 
@@ -83,6 +90,10 @@ MISTAKEN = {
     "inertia and speed": (
         engine("both", friction=lambda joint, spin, *at: joint.inertia**0.1 * (1.0 + 0.1 * abs(spin))),
         "it depends on the inertia, the friction moment, the speed, the angle or the direction.",
+    ),
+    "eight bits of the inertia": (
+        replace(engine("bits", friction=in_eight_bits), precision=1e-6),
+        f"{WHOLE}0.9969 to 1.003 times F: it depends on the inertia",
     ),
     "static while sliding": (
         engine("rough", friction=lambda joint, *at: joint.static_ratio, static=1.0),

@@ -6,11 +6,15 @@ import sys
 import numpy as np
 import pytest
 
-from compare.engines import INSTALLED, KINDS, Engine, engines, known_name
-from reference_model import PinOnDisc, simulate
+from compare.engines import INSTALLED, KINDS, Engine, UnsupportedSystemError, engines, known_name
+from reference_model import FrictionJoint, PinOnDisc, simulate
 
 NAMES = [f"{name}:{setting}" for name, known in INSTALLED.items() for setting in known.settings]
 COARSE = 4e-3
+ANOTHER_LAW = (
+    *("mujoco:pyramid", "mujoco:shipped", "bullet:box", "bullet:shipped"),
+    *("dart:dantzig", "dart:pgs", "dart:shipped", "ode:shipped"),
+)
 
 
 def live(name):
@@ -61,5 +65,23 @@ def test_errors_of_a_live_engine_fall_with_its_step(name):
         np.max(np.abs(engine.function(slides, (0.9, 0.0, 0.0, 0.9), times, **how).states - exact))
         for how in accuracy
     )
-    by_axis = name in ("mujoco:pyramid", "bullet:box", "dart:dantzig", "dart:pgs", "ode:shipped")
-    assert (fine > 1e-3) if by_axis else fine < max(0.5 * coarse, 1e-6)
+    assert (fine > 1e-3) if name in ANOTHER_LAW else fine < max(0.5 * coarse, 1e-6)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_joint_of_a_live_engine_stops_and_breaks_away(name):
+    engine = live(name)
+    joint = FrictionJoint(inertia=0.5, friction_moment=2.0, moment=((1.0, 0.0), (3.0, 6.0)))
+    if not engine.simulates(joint):
+        pytest.skip("simulates no joints")
+    times = np.linspace(0.0, 3.0, 7)
+    exact = simulate(joint, (0.1, 2.0), times).states
+    coarse, fine = (
+        np.max(np.abs(engine.function(joint, (0.1, 2.0), times, step=step).states - exact))
+        for step in (COARSE, COARSE / 4)
+    )
+    assert coarse < 0.5  # without friction, the joint would turn by 10 rad
+    wrong = name in ("mujoco:shipped", "bullet:shipped")  # soft friction, and a damping of bodies
+    assert (fine > 1e-3) if wrong else fine < max(0.5 * coarse, 1e-6)
+    with pytest.raises(UnsupportedSystemError, match="one friction moment at rest and in motion"):
+        engine.simulate(FrictionJoint(inertia=0.5, friction_moment=2.0, static_ratio=1.5), (0.0, 0.0), times)

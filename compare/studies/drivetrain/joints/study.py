@@ -1,15 +1,22 @@
 """Parameters, formulas and claims."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims import Data, Measured, Measurement, Study, refined
 from compare.claims.parameters import components_of
+from compare.claims.prose import Table
+from compare.diagnosis.row import Row
+from compare.diagnosis.run import row_of
 from compare.engines import Engine
+from compare.foreign import Recording, recordings
+from compare.report.numbers import error_text
+from compare.studies.toolkit.measuring import recorded_cells
 from reference_model import FrictionJoint
 from reference_model.systems import FloatArray
 
@@ -200,3 +207,40 @@ def swings(engine: Engine) -> Measured:
 def turns_back(engine: Engine) -> Measured:
     found = moved(engine, TURNED, (0.0, SPEED), AT)
     return compared(found, turned_back(AT[1:]), TURNED, AT, {})
+
+
+# --- Recorded engines
+
+RECORDED = {
+    "stops": "stops",
+    "holds": "holds",
+    "breaks-away": "breaks away at 1.5 F",
+    "swings": "swings",
+    "turns-back": "turns back",
+}
+"""Headings of the claims in the table of recorded engines."""
+
+
+def tables() -> tuple[Table, ...]:
+    def deviation(claim: Mapping[str, Any]) -> str:
+        return error_text(float(np.max(np.array(claim["difference"], dtype=float))))
+
+    rows = tuple(
+        (one.name, *recorded_cells(one, STUDY.name, list(RECORDED), deviation), _in_words(one))
+        for one in recordings()
+        if STUDY.name in one.claims
+    )
+    caption = (
+        "Recorded engines, with their own friction in joints: verdict and largest deviation for each claim, and the "
+        "first sentence of matrix. Fixed steps are 0.5 and 0.18 ms."
+    )
+    return (Table(caption, ("Engine, setting", *RECORDED.values(), "In words"), rows),)
+
+
+def _in_words(recording: Recording) -> str:
+    row = row_of(recording)
+    only = Row(row.engine, row.version, row.step, repeat=row.repeat, joint=row.joint, hour=row.hour)
+    return only.sentences[0]
+
+
+STUDY.provides(tables=tables)

@@ -92,7 +92,7 @@ def _orders(
     predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
 ) -> Measured:
     by_name = {recording.name: recording for recording in theory.recorded()}
-    runs = {(name, case): theory.halvings(by_name[name].runs[case]) for case in cases for name in wanted}
+    runs = {(name, case): by_name[name].runs[case] for case in cases for name in wanted}
     found = [
         observed_exponent(1.0 / rows[:, STEPS], rows[:, ERROR], next_term=1.0)
         if scatters
@@ -154,7 +154,7 @@ def pyramid_releases() -> Measured:
 
 def _as_far_off_as(law: theory.Law, case: str, wanted: tuple[str, ...]) -> Measured:
     by_name = {recording.name: recording for recording in theory.recorded()}
-    errors = np.array([theory.halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
+    errors = np.array([by_name[name].runs[case][-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
     rounding = 0.5 * 10.0 ** (1 - DIGITS) * errors[:, -1]
     predicted, smoothing = theory.error_of(law, CASES[case])
@@ -233,6 +233,8 @@ PANELS = {
 }
 """Motion of each figure, whose panels show one foreign engine each."""
 
+COLUMNS = 5
+
 
 def draw(data: ByEngine) -> Figures:
     if "theory" not in data:
@@ -247,8 +249,8 @@ def _by_engine(ladders: Data, settings: Sequence[Recorded], case: str) -> Figure
     for one in settings:
         if one.setting and f"{one.engine}, {one.setting}: {case}" in ladders:
             by_engine.setdefault(one.engine, []).append(one)
-    rows = -(-len(by_engine) // 4)
-    figure, panels = new_figure(4, rows, width=11.0, height=2.5 * rows, sharex=True, sharey=True)
+    rows = -(-len(by_engine) // COLUMNS)
+    figure, panels = new_figure(COLUMNS, rows, width=11.5, height=2.5 * rows, sharex=True, sharey=True)
     for panel, (engine, found) in zip(panels, by_engine.items(), strict=False):
         best = best_of(found)
         panel.loglog(*ladders[f"reference: {case}"].T, color=GREY, linestyle=":", linewidth=1.0)

@@ -66,23 +66,11 @@ TANGENTS = (
 WANTED = 1e-3
 """Error (m) whose computing time the table lists, the largest that the paper's figures hide."""
 
-HALVED = 0.02
-"""Allowed deviation of the ratio of step numbers from 2, because steps divide the interval between output times."""
-
 
 @functools.cache
 def recorded() -> tuple[Recording, ...]:
-    return recordings()
-
-
-def halvings(runs: FloatArray) -> FloatArray:
-    """Return the last of ``runs`` among which each step is half of the previous step, shape (m, columns)."""
-    ratios = runs[1:, STEPS] / runs[:-1, STEPS]
-    strange = np.nonzero(np.abs(ratios - 2.0) > HALVED)[0]
-    # A series may end with the smallest step of the engine.
-    if strange.size and strange[-1] == len(ratios) - 1:
-        return halvings(runs[:-1])
-    return runs[strange[-1] + 1 :] if strange.size else runs
+    """Return the recordings of pins; others contain only friction laws."""
+    return tuple(one for one in recordings() if one.runs)
 
 
 # --- Friction laws other than Coulomb's
@@ -343,10 +331,6 @@ def _of_each_case(recording: Recording, words: Iterable[str]) -> list[str]:
 
 def tables() -> tuple[Table, ...]:
     titles = tuple(case.name for case in CASES.values())
-    ends = {one.engine: one.runs["slip"][-2:, STEPS] for one in recorded() if one.step is not None}
-    uneven = ", ".join(
-        sorted(engine for engine, (before, last) in ends.items() if last / before < 2.0 - HALVED)
-    )
     best = tuple((one.name, *_of_each_case(one, _best_run(one))) for one in recorded())
     cost = tuple(
         (one.name, *_of_each_case(one, (time_to(WANTED, runs) for runs in one.runs.values())))
@@ -354,17 +338,23 @@ def tables() -> tuple[Table, ...]:
     )
     how = tuple(
         (recording.name, recording.version, recording.says, f"{recording.recorded}, {recording.platform}")
-        for recording in recorded()
+        for recording in recordings()
     )
+    spun = tuple((row.engine, row.spin[0]) for row in map(row_of, recordings()) if row.spin[0])
     return (
         Table(
             "Largest deviation from the exact motion over time in m, at the smallest step or tolerance, ± twice the "
             "error by Richardson's extrapolation of its last changes. The verdicts in the matrix follow from these "
-            "numbers. Orders are fitted to the last two refinements, with the steps that were used. Fixed steps are "
-            f"halved, except that the last step of {uneven} is a limit. Times are those of one core.",
+            "numbers. Orders are fitted to the last two refinements. Fixed steps are halved. Times are those of one "
+            "core.",
             ("Engine, setting", *titles),
             best,
         ),
         Table(f"Time in ms on one core for an error of {WANTED:g} m.", ("Engine, setting", *titles), cost),
+        Table(
+            "Disc that slides and spins, at eight ratios of slide to spin: friction law and largest deviation.",
+            ("Engine, setting", "Friction law"),
+            spun,
+        ),
         Table("Settings and recording.", ("Engine, setting", "Version", "Setting", "Recorded"), how),
     )

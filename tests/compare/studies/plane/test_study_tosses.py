@@ -263,3 +263,11 @@ def test_a_slow_spin_falls_as_a_power_of_the_speed_and_curls_the_path(load, squa
     assert ratios == pytest.approx((theory.SLOWEST / first) ** power, rel=1e-3)
     whole = (theory.SLOWEST ** (power - 1.0) - first ** (power - 1.0)) / (1.0 - power) / first**power
     assert found.turn == pytest.approx(-np.degrees(shift * slow["spin_first"] * whole), rel=5e-3)
+
+
+def test_the_table_of_recorded_engines_shows_which_boxes_contradict_the_measurement():
+    rows = {name: cells for name, *cells in STUDY.tables()[1].rows}
+    assert rows["measured"][2] == "0.66, 0.58, 0.49, 0.41, 0.32"
+    assert [cell[0] for cell in rows["MuJoCo, elliptic cone"]] == ["✓"] * 3
+    assert [cell[0] for cell in rows["MuJoCo, pyramidal cone"]] == ["✗", "✓", "✗"]
+    assert all(rows[f"{name}, contact"][2] == "✗ 0.03, 0.00, 0.00, 0.00, 0.00" for name in ("Rapier", "Jolt"))
