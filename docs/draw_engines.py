@@ -104,7 +104,7 @@ def _said(recorded: Recorded) -> str:
 
 SHORTER = {
     r"every body loses (.*) of its speed per second": r"loses \1 of speed per s",
-    r"a disc that .* has friction along the impulse that would stop each of . points": "on a disc, it stops each point",
+    r"a disc that .* the impulse that would stop each of . points": "on a disc, it stops each point",
     r"a block that should rest (creeps .*)": r"\1",
     r"its error bar of (.*) exceeds .*": r"error bar of \1",
 }
