@@ -153,9 +153,8 @@ def rest_or_slip(
     def slips(slides: NDArray[np.bool_]) -> tuple[FloatArray, NDArray[np.bool_]]:
         limits = np.where(slides[:, None], sliding, static)
         forces, left = sets.forces(to_rates, rates, limits)
-        sizes = np.array([np.linalg.norm(forces[rows]) for rows in sets.blocks])
-        moves = sets.sizes(left) > np.maximum(least, SLIPS * np.array(own) * sizes)
-        return left, moves
+        terms = sets.sizes(np.abs(to_rates) @ np.abs(forces))
+        return left, sets.sizes(left) > np.maximum(least, SLIPS * terms)
 
     slides = np.zeros(count, dtype=bool)
     left, moves = slips(slides)

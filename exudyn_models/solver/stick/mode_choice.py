@@ -25,7 +25,12 @@ from exudyn_models.solver.stick.resting import Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
-from exudyn_models.solver.stick.sticking_contacts import PlanarContact, SpringFlanks, StickingContact
+from exudyn_models.solver.stick.sticking_contacts import (
+    LEAST,
+    PlanarContact,
+    SpringFlanks,
+    StickingContact,
+)
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -42,7 +47,7 @@ NEAR = 0.02
 """Unused share of capacity below which loads are computed again, because the loads in Exudyn's steps contain
 errors."""
 
-AHEAD = 1e-9
+AHEAD = 1e-5
 """Share of a step to look ahead for the flank of a spring that is pressed."""
 
 GROWN = 10.0
@@ -335,24 +340,34 @@ class ModeChoice:
     def margins(self, t: float) -> FloatArray:
         """Return numbers that fall below zero when the present modes end, shape (contacts + springs,).
 
-        They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
-        rest, or ±1 without load or coefficient.
+        They are the slip in the direction of sliding (m/s or rad/s), or the unused share of the capacity of contacts
+        at rest. They change their sign where friction vanishes or begins.
         """
         if self._line is not None:
             now = self._line.margins(self._data)
             if (now[self._resting.alone] >= NEAR).all():
                 return now
-        springs = [spring.margin(self._mbs, t) for spring in self._springs]
+        springs = [spring.margin(self._mbs) for spring in self._springs]
         return np.append(self._margins_of_contacts(t), springs)
 
     def _margins_of_contacts(self, t: float) -> FloatArray:
         slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
         margins: FloatArray = self._offsets + self._directions * slips
+        changed = []
         for i in self._varying:
-            margins[i] = self._contacts[i].margin(self._mbs, t)
-            self._limits[i] = self._contacts[i].capacities(t)
-        if not self._resting.rows:
-            return margins
+            contact = self._contacts[i]
+            margins[i] = contact.margin(self._mbs)
+            self._limits[i] = contact.capacities(t)
+            if (contact.holding(t) == 0.0) != (contact.mode == Mode.OPEN):
+                changed.append(i)
+        if self._resting.rows:
+            margins = np.minimum(margins, np.maximum(self._checked_left(t), -1.0))  # finite without friction
+        # A jump to minus the same size has no root that interpolation could mistake for it.
+        margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
+        return margins
+
+    def _checked_left(self, t: float) -> FloatArray:
+        """Return ``_left``, by new loads if one is nearly overloaded."""
         left = self._left(t)
         least = left.min()
         if least < NEAR:
@@ -367,7 +382,7 @@ class ModeChoice:
                 )
             self._data.SetAECoordinates(before[0])
             self._data.SetODE2Coordinates_tt(before[1])
-        return np.minimum(margins, np.maximum(left, -1.0))  # finite where friction vanishes
+        return left
 
     def _left(self, t: float) -> FloatArray:
         """Return the unused shares of capacities, 1 in slip; for a one-way clutch this share is continuous."""

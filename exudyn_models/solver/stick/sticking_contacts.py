@@ -132,10 +132,6 @@ class StickingContact:
         least = max(FREE * max(forward, backward), LEAST)
         return max(forward, least), max(backward, least)
 
-    def opens_or_closes(self, holding: float) -> bool:
-        """Return whether static friction has vanished, or acts on an open contact."""
-        return (holding == 0.0) != (self.mode == Mode.OPEN)
-
     def rows_and_bias(self, state: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Return the gradients of the locked slips, shape (k, n), and their rates without accelerations, shape (k,).
 
@@ -154,13 +150,8 @@ class StickingContact:
             data.GetODE2Coordinates_tt(configuration)[places],
         )
 
-    def margin(self, mbs: Any, t: float) -> float:
-        """Return a number that falls below zero when the present mode ends.
-
-        It is the slip in the direction of sliding (rad/s), 1 at rest, or ±1 without load or coefficient.
-        """
-        if self.opens_or_closes(self.holding(t)):
-            return -1.0
+    def margin(self, mbs: Any) -> float:
+        """Return the slip in the direction of sliding (rad/s), which falls below zero when it ends, or 1."""
         return int(self.mode) * self.stick.slip(*self._state(mbs)[:2]) if self.stick.slides else 1.0
 
 
@@ -185,7 +176,7 @@ class SpringFlanks(StickingContact):
         twist, rate = self._motion(mbs)
         self.flanks.mode = self.flanks.pressed(twist + ahead * rate, rate)
 
-    def margin(self, mbs: Any, t: float) -> float:
+    def margin(self, mbs: Any) -> float:
         """Return a moment in N m that falls below zero when the pressed flank changes."""
         return self.flanks.margin(*self._motion(mbs))
 
@@ -276,13 +267,11 @@ class PlanarContact(StickingContact):
         self.stick.mode = self.sliding_mode(motion.slip)
         return motion
 
-    def margin(self, mbs: Any, t: float) -> float:
-        """Return ±1, or a number that falls below zero when the slip of a held contact begins or vanishes.
+    def margin(self, mbs: Any) -> float:
+        """Return 1, or a number that falls below zero when the slip of a held contact begins or vanishes.
 
         ``sliding_steps`` finds the end of sliding.
         """
-        if self.opens_or_closes(self.holding(t)):
-            return -1.0
         if self.stick.slides:
             return 1.0 if self.free_to_slide else self.slid(mbs).potential / STILL - 0.5
         if self.mode == Mode.OPEN or self.planar.allowed.shape[1] == self.planar.most_locks:
