@@ -84,6 +84,8 @@ class ModeChoice:
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
+        self._holding = np.array([contact.holding(t) for contact in contacts])
+        self._limits = np.array([contact.capacities(t) for contact in contacts]).reshape(-1, 2)
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
@@ -136,10 +138,10 @@ class ModeChoice:
             contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
             contact.motion(self._mbs)
-        self._dynamics.evaluate(t)
+        self._dynamics.evaluate(t, self._places)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
-        self._holding = np.array([contact.holding(t) for contact in self._contacts])
-        self._limits = np.array([contact.capacities(t) for contact in self._contacts]).reshape(-1, 2)
+        for i in self._varying:
+            self._holding[i], self._limits[i] = self._contacts[i].holding(t), self._contacts[i].capacities(t)
         bounds = slips.bounds(self._present()[1], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
         still[self._one_way] |= slips.now[[slips.sets.blocks[i].start for i in self._one_way]] < 0.0
@@ -152,9 +154,8 @@ class ModeChoice:
         for contact, mode, rows in zip(self._contacts, modes, slips.sets.blocks, strict=True):
             if mode == Mode.LOCKED and contact.stick.slides:
                 self._slipped.add(contact)
-            if contact.mode == Mode.LOCKED:
-                own = range(rows.start, rows.stop)
-                contact.enter(self._mbs, Mode.LOCKED, [i for i, row in enumerate(own) if row in held])
+            own = range(rows.start, rows.stop) if contact.mode == Mode.LOCKED else ()
+            contact.lock(self._mbs, [i for i, row in enumerate(own) if row in held])
         firsts = [rows.start for rows in slips.sets.blocks]
         self._rows = slips.rows[firsts]
         self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
@@ -345,7 +346,7 @@ class ModeChoice:
         """
         if self._line is not None:
             now = self._line.margins(self._data)
-            if (now[self._resting.alone] >= NEAR).all():
+            if now.min() >= NEAR or (now[self._resting.alone] >= NEAR).all():
                 return now
         springs = [spring.margin(self._mbs) for spring in self._springs]
         return np.append(self._margins_of_contacts(t), springs)

@@ -80,16 +80,19 @@ class StickingContact:
         assert self.stick.mode is not None
         return self.stick.mode
 
-    def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
-        """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
-        self.stick.mode, before = mode, self.stick.entered
-        if before == (mode, *locks):
-            return
-        self.stick.entered = mode, *locks
-        for i, lock in enumerate(self.stick.locks):
-            mbs.SetObjectParameter(lock, "activeConnector", i in locks)
-        if before[:1] != (mode,) and (forces := self.stick.constant_forces) is not None:
+    def enter(self, mbs: Any, mode: Mode) -> None:
+        """Switch to a mode, without its locks."""
+        before, self.stick.mode, self.stick.entered = self.stick.entered, mode, mode
+        if before != mode and (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
+
+    def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
+        """Let constraints hold these directions of slip."""
+        before = self.stick.held
+        self.stick.held = tuple(i in directions for i in range(len(self.stick.locks)))
+        if self.stick.held != before:
+            for lock, holds in zip(self.stick.locks, self.stick.held, strict=True):
+                mbs.SetObjectParameter(lock, "activeConnector", holds)
 
     def omit_user_functions(self, mbs: Any) -> None:
         """Let Exudyn evaluate constant moments itself."""
@@ -137,6 +140,8 @@ class StickingContact:
 
         ``state`` contains the coordinates of the model, without reference values, and their derivatives.
         """
+        if len(self.stick.weights):
+            return self.stick.weights[None], np.zeros(1)
         q, q_t = state
         own = q[self.places], q_t[self.places], np.zeros(len(self.places))
         return self.stick.rows(self.stick.reference + own[0]), self.stick.bias(own)
@@ -352,9 +357,11 @@ def running(mbs: Any, contacts: Sequence[StickingContact]) -> Iterator[None]:
     """Let contacts stick and slide in a run, at first without friction."""
     try:
         for contact in contacts:
-            contact.stick.running, contact.stick.largest, contact.stick.entered = True, 0.0, ()
+            contact.stick.running, contact.stick.largest = True, 0.0
+            contact.stick.entered = contact.stick.held = None
             contact.omit_user_functions(mbs)
             contact.enter(mbs, Mode.OPEN)
+            contact.lock(mbs)
         yield
     finally:
         for contact in contacts:
