@@ -84,8 +84,9 @@ class ModeChoice:
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
-        self._holding = np.array([contact.holding(t) for contact in contacts])
-        self._limits = np.array([contact.capacities(t) for contact in contacts]).reshape(-1, 2)
+        self._holding, self._limits = np.zeros(len(contacts)), np.zeros((len(contacts), 2))
+        for i, contact in enumerate(contacts):
+            self._holding[i], self._limits[i] = contact.strength(t)
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
@@ -141,7 +142,7 @@ class ModeChoice:
         self._dynamics.evaluate(t, self._places)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
         for i in self._varying:
-            self._holding[i], self._limits[i] = self._contacts[i].holding(t), self._contacts[i].capacities(t)
+            self._holding[i], self._limits[i] = self._contacts[i].strength(t)
         bounds = slips.bounds(self._present()[1], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
         still[self._one_way] |= slips.now[[slips.sets.blocks[i].start for i in self._one_way]] < 0.0
@@ -194,7 +195,7 @@ class ModeChoice:
             before = np.concatenate((forces, self._holding))
             self._dynamics.store(accelerations, constraints, configurations)
             for i in self._varying:
-                self._holding[i] = self._contacts[i].holding(t)
+                self._holding[i] = self._contacts[i].strength(t)[0]
             now = np.concatenate((self._dynamics.forces(), self._holding))
             if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
                 return
@@ -289,7 +290,7 @@ class ModeChoice:
         contacts = [self._contacts[i] for i in still]
         rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
         for i in self._varying:
-            self._limits[i] = self._contacts[i].capacities(t)
+            self._limits[i] = self._contacts[i].strength(t)[1]
         static = self._limits[list(still)]
         ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
         overloads = np.array([contact in self._overloaded for contact in contacts])
@@ -358,8 +359,8 @@ class ModeChoice:
         for i in self._varying:
             contact = self._contacts[i]
             margins[i] = contact.margin(self._mbs)
-            self._limits[i] = contact.capacities(t)
-            if (contact.holding(t) == 0.0) != (contact.mode == Mode.OPEN):
+            holding, self._limits[i] = contact.strength(t)
+            if (holding == 0.0) != (contact.mode == Mode.OPEN):
                 changed.append(i)
         if self._resting.rows:
             margins = np.minimum(margins, np.maximum(self._checked_left(t), -1.0))  # finite without friction

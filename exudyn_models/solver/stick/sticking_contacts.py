@@ -18,7 +18,7 @@ from exudyn_models.solver.rows.laws import LEAST as UNLOADED
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
+from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, TINY, PlanarStick
 from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from reference_model.systems import FloatArray
 
@@ -125,15 +125,15 @@ class StickingContact:
         """Return the projection of forces along the locks onto forces that joints cannot carry, shape (k, k)."""
         return np.eye(1)
 
-    def holding(self, t: float) -> float:
-        """Return the static friction, a moment in N m."""
-        return self.stick.without_rounding(max(self.stick.limits(t)))
+    def strength(self, t: float) -> tuple[float, tuple[float, float]]:
+        """Return the static friction, a moment in N m, and its limits against sliding forward and backward.
 
-    def capacities(self, t: float) -> tuple[float, float]:
-        """Return the largest moments in N m against sliding forward and backward, > 0 of a one-way clutch too."""
+        The limits are > 0, also without friction and for a one-way clutch.
+        """
         forward, backward = self.stick.limits(t)
-        least = max(FREE * max(forward, backward), LEAST)
-        return max(forward, least), max(backward, least)
+        largest = max(forward, backward)
+        least = max(FREE * largest, LEAST)
+        return self.stick.without_rounding(largest), (max(forward, least), max(backward, least))
 
     def rows_and_bias(self, state: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Return the gradients of the locked slips, shape (k, n), and their rates without accelerations, shape (k,).
@@ -163,9 +163,9 @@ class StickingContact:
 class RotorCoupling(StickingContact):
     """One-way clutch, mesh or contact whose load grows with a moment, which never opens."""
 
-    def holding(self, t: float) -> float:
-        """Return a moment in N m without effect on the choice of modes; the true limits depend on the moments."""
-        return UNLOADED
+    def strength(self, t: float) -> tuple[float, tuple[float, float]]:
+        """Return a moment in N m without effect on the choice of modes, and the limits by the present moments."""
+        return UNLOADED, super().strength(t)[1]
 
 
 class SpringFlanks(StickingContact):
@@ -235,18 +235,15 @@ class PlanarContact(StickingContact):
         """Return a dimensionless gradient of P."""
         return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
 
-    def holding(self, t: float) -> float:
-        """Return the static friction in N."""
-        return self.planar.without_rounding(self.planar.holding_force(t))
+    def strength(self, t: float) -> tuple[float, tuple[float, float]]:
+        """Return the static friction in N, and twice the same, > 0."""
+        holding = self.planar.without_rounding(self.planar.holding_force(t))
+        return holding, (max(holding, TINY),) * 2
 
     def effective(self) -> FloatArray:
         """Return the projection of forces along the locks onto forces that joints cannot carry, shape (k, k)."""
         axes = self.planar.allowed[: self.planar.most_locks] * self.planar.scales[:, None]
         return np.asarray(axes @ axes.T)
-
-    def capacities(self, t: float) -> tuple[float, float]:
-        """Return the static friction in N twice, > 0."""
-        return (max(self.holding(t), np.finfo(float).tiny),) * 2
 
     def shares(self, forces: FloatArray, limits: FloatArray) -> tuple[Sequence[float], Sequence[FloatArray]]:
         """Return the share of the ``limits`` of forces along the locks, and its slope."""
@@ -263,8 +260,7 @@ class PlanarContact(StickingContact):
 
     def start_step(self, mbs: Any) -> None:
         """Prepare the friction for the next step."""
-        q, q_t, _ = self._state(mbs)
-        self.planar.start_step(q, q_t)
+        self.planar.start_step(self._state(mbs))
 
     def slid(self, mbs: Any) -> SlipMotion:
         """Return the present motion, and store its direction as the mode."""

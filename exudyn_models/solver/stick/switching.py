@@ -124,7 +124,7 @@ class _Run:
             # The direction of friction turns too fast for an old Jacobian.
             newton.useModifiedNewton = False
             self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
-            friction = max(contact.holding(self._start) for contact in self._planar)
+            friction = max(contact.strength(self._start)[0] for contact in self._planar)
             newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:

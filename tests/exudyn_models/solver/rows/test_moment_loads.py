@@ -1,5 +1,7 @@
 """Friction whose load grows with a moment: self-energising brakes and ball ramps, against closed forms."""
 
+import math
+
 import numpy as np
 import pytest
 from free_bodies import changes_of, drive, new_model, rate_of, rotor
@@ -36,6 +38,17 @@ def test_a_leading_shoe_trails_backward():
     leading, trailing = 24.0 / (1.0 - 0.3), 24.0 / (1.0 + 0.3)
     assert (stop, mode) == (pytest.approx(2.0 * 0.5 / (leading + 25.0), abs=1e-9), -1)
     assert rate_of(mbs, wheel) == pytest.approx(-(25.0 - trailing) / 0.5 * (0.5 - stop), abs=1e-8)
+
+
+@pytest.mark.parametrize(("way", "tension"), [(1.0, math.exp(1.2) - 1.0), (-1.0, 1.0 - math.exp(-1.2))])
+def test_a_band_brake_pulls_more_in_the_direction_of_its_fixed_end(way, tension):
+    """The wrap angle is 4 rad, and μ = 0.3; 50 N pull at the slack end."""
+    mbs = new_model()
+    drum = rotor(mbs, 0.5, 2.0 * way)
+    band = {"friction_coefficient": 1.0 - math.exp(-1.2), "load_gain": (0.0, 1.0 / 0.1)}
+    add_ring_friction(mbs, None, drum, contact_radius=0.1, normal_load=50.0, **band)
+    ((stop, *_, mode),) = changes_of(mbs, 1.0, STEP)
+    assert (stop, mode) == (pytest.approx(2.0 * 0.5 / (5.0 * tension), abs=1e-9), 0)
 
 
 def test_a_brake_whose_friction_falls_with_slip_follows_its_equation():
