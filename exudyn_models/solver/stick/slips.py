@@ -36,9 +36,12 @@ class Slips:
             np.zeros((ends[-1], size)),
             np.concatenate([np.empty(0), *(bias for _, bias in own)]),
         )
-        for contact, first, (gradients, _) in zip(contacts, ends, own, strict=False):
-            for i, gradient in enumerate(gradients, first):
-                self.rows[i, contact.places] = gradient
+        columns = [contact.places for contact, (rows, _) in zip(contacts, own, strict=True) for _ in rows]
+        owner = np.repeat(np.arange(len(columns)), list(map(len, columns)))
+        none = np.empty(0, dtype=int)
+        self.rows[owner, np.concatenate([none, *columns])] = np.concatenate(
+            [none, *(g.ravel() for g, _ in own)]
+        )
         #: Slips (m/s or rad/s) before any change by ``give``.
         self.now = self.rows @ self._velocities
         self._to_velocities = dynamics.inverse[:size, :size] @ self.rows.T
