@@ -358,7 +358,8 @@ class ModeChoice:
         changed = []
         for i in self._varying:
             contact = self._contacts[i]
-            margins[i] = contact.margin(self._mbs)
+            if not len(contact.stick.weights):  # the gradient of the slip turns
+                margins[i] = contact.margin(self._mbs)
             holding, self._limits[i] = contact.strength(t)
             if (holding == 0.0) != (contact.mode == Mode.OPEN):
                 changed.append(i)
