@@ -12,7 +12,7 @@ STATUSES = {
     SOMETHING_DIFFERS: "something differs, or an engine failed: it raised, crashed or returned nonsense",
     BAD_INPUT: "invalid input (pytest: 4)",
     NOTHING_SHOWN: "nothing differs, but less than half could be measured, or the verdict is open",
-    INTERRUPTED: "interrupted by Ctrl-C",
+    INTERRUPTED: "interrupted by Ctrl-C or SIGTERM",
 }
 
 

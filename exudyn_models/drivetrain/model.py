@@ -14,7 +14,7 @@ import numpy as np
 
 from exudyn_models.drivetrain.parameters import Drivetrain
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
-from exudyn_models.parts.energy_balance import EnergyBalance, Power, add_energy_balance, spring_energy
+from exudyn_models.parts.energy_balance import EnergyBalance, add_energy_balance, spring_energy
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
@@ -22,6 +22,7 @@ from exudyn_models.parts.rotational.torques import Torque, add_torque
 from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.solver_run import quiet
+from exudyn_models.solver.starting_rates import Power
 from reference_model.systems import (
     FloatArray,
     checked_tolerance,

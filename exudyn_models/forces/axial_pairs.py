@@ -141,8 +141,8 @@ class RowLaw:
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``point`` is the number of
     a point, from 1, of a contact at several points. ``on_axis`` is False if the bodies can slide sideways.
-    ``largest`` is the largest friction in the run, and ``entered`` the mode and the
-    held directions that Exudyn knows. ``holds`` returns the forces of a contact at rest along its locks.
+    ``largest`` is the largest friction in the run. Exudyn knows the mode ``entered``, and for each lock whether it is
+    ``held``. ``holds`` returns the forces of a contact at rest along its locks.
     """
 
     weights: FloatArray = field(default_factory=lambda: np.empty(0))
@@ -150,7 +150,8 @@ class RowLaw:
     static_ratio: float = 1.0
     locks: tuple[int, ...] = ()
     mode: Mode | None = None
-    entered: tuple[Any, ...] = ()
+    entered: Mode | None = None
+    held: tuple[bool, ...] | None = None
     running: bool = False
     point: int | None = None
     on_axis: bool = True
@@ -195,12 +196,12 @@ class RowLaw:
         raise NotImplementedError
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
-        """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""
-        return np.array([self.gradient(coordinates)])
+        """Return the gradients of the locked slips, shape (k, n), at ``coordinates`` with reference values."""
+        raise NotImplementedError
 
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
         """Return the rates of the locked slips without accelerations, shape (k,)."""
-        return np.zeros(1)
+        raise NotImplementedError
 
     def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
         """Return s in rad/s."""

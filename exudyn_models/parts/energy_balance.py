@@ -7,20 +7,15 @@ along with all coordinates, so works are as accurate as the motion.
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.solver.checks.jumps import watch_powers
-from exudyn_models.solver.items import IN_MEMORY, add_integrals, at_assembly, items, node_sensor
+from exudyn_models.solver.items import IN_MEMORY, at_assembly, items, node_sensor
 from exudyn_models.solver.solver_run import quiet
-from exudyn_models.solver.starting_rates import Works
+from exudyn_models.solver.starting_rates import Power, add_works
 from reference_model.systems import FloatArray, positive_number, require_callable, require_kind, shown
-
-Power: TypeAlias = Callable[[Any, float], float]
-"""Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
 
 Energy: TypeAlias = Callable[[Any], float]
 """Function of ``mbs`` that returns an energy in J of the current motion."""
@@ -112,7 +107,8 @@ def add_energy_balance(
         require_callable(f"stored[{i}]", energy, "mbs")
     _check_powers(gains, losses)
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
-    works_sensor = _add_works(mbs, {**gains, **losses}, unit)
+    works = add_works(mbs, {**gains, **losses}, unit)
+    works_sensor = node_sensor(mbs, works, exu.OutputVariableType.Coordinates)
     energy_sensor = _add_energy(mbs, stored)
 
     def read() -> EnergyBalance:
@@ -141,15 +137,6 @@ def _check_powers(gains: Mapping[str, Power], losses: Mapping[str, Power]) -> No
     for name in gains:
         if name in losses:
             raise ValueError(f"gains, losses: {name!r} names both a gain and a loss; use two names")
-
-
-def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
-    powers = list(named.values())
-    works = Works(mbs, lambda mbs, t: [power(mbs, t) / unit for power in powers])
-    rates = partial(works.rates)  # takes attributes, unlike a method
-    watch_powers(rates, list(named), unit)
-    works.node = add_integrals(mbs, rates, [0.0] * len(powers))
-    return node_sensor(mbs, works.node, exu.OutputVariableType.Coordinates)
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:

@@ -16,9 +16,9 @@ from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
-from exudyn_models.solver.checks.jumps import watch_powers
 from exudyn_models.solver.contacts import Contact, motion_of, places_of, present_item
-from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
+from exudyn_models.solver.items import CURRENT, IN_MEMORY, items, node_sensor
+from exudyn_models.solver.starting_rates import add_works
 from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import FloatArray, require_choice
 
@@ -125,7 +125,8 @@ class RingFriction:
         require_choice("quantity", quantity, get_args(Quantity))
         options = IN_MEMORY | options
         if quantity == "heat":
-            return self._add_heat(options)
+            node = add_works(self.mbs, {"heat": self.power})
+            return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
         return self.mbs.AddSensor(
             items.SensorUserFunction(sensorUserFunction=self._sensor_function(quantity), **options)
         )
@@ -221,15 +222,6 @@ class RingFriction:
         of_law = of_stick if stick is not None and on_axis else of_any
         contact.power = of_constant_moment if law and not second else of_law  # at half the cost
         return contact.power
-
-    def _add_heat(self, options: dict[str, Any]) -> Any:
-        def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
-            return [(contact.power or self._new_power())(t)]
-
-        contact = self._contact
-        watch_powers(rate, ["heat"])
-        node = add_integrals(self.mbs, rate, [0.0])
-        return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
 
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius in the master's axes, and these axes."""

@@ -35,6 +35,7 @@ from exudyn_models.solver.checks.jumps import JumpCheck
 from exudyn_models.solver.checks.steep_laws import peaks_resolved
 from exudyn_models.solver.checks.step_limit import INTERVALS, StepCheck
 from exudyn_models.solver.contacts import find_again
+from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
@@ -121,13 +122,15 @@ class _Look:
         data, self._solver, self._start = mbs.systemData, solver, options.startTime
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._others, self._rates = data.GetODE1Coordinates, data.GetODE1Coordinates_t
+        self._read = [self._positions, self._velocities, *[self._others] * (data.ODE1Size() > 0)]
         automatic = solver not in IMPLICIT and solver.name not in INTERVALS
         self._count = StepCount(options.endTime) if automatic else None
         if self._count is not None:
             self._count.look_from(self._start)
         self._steps = StepCheck(mbs, solver.name, options)
         self._steps.warn(self._start, self._positions(exu.ConfigurationType.Initial))
-        self._jumps = JumpCheck(mbs) if solver in IMPLICIT else None
+        jumps = JumpCheck(mbs)
+        self._jumps = jumps if solver in IMPLICIT and jumps.names else None
         self._reached, self._finite, self._too_many = self._start, True, ""
 
     @property
@@ -143,9 +146,7 @@ class _Look:
         self._reached = t
         if t >= self._steps.next_time:
             self._steps.warn(t, self._positions())
-        self._finite = math.isfinite(
-            sum(self._positions().tolist()) + sum(self._velocities().tolist()) + sum(self._others().tolist())
-        )
+        self._finite = math.isfinite(sum(sum(read(CURRENT, False).tolist()) for read in self._read))
         if self._jumps is not None:
             self._jumps.look(t, self._rates())
         if self._count is not None:

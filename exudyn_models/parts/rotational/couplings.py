@@ -15,11 +15,11 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import RowLaw
 from exudyn_models.parts.connector import add_connector
-from exudyn_models.solver.checks.jumps import watch_powers
 from exudyn_models.solver.contacts import Coupling, motion_of, register
-from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
+from exudyn_models.solver.items import CURRENT, IN_MEMORY, items, node_sensor
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import MeshLaw
+from exudyn_models.solver.starting_rates import add_works
 from reference_model.systems import FloatArray, require_choice, require_kind, shown
 
 FREEDOMS = ("1D", "Point2D", "Point", "RigidBody2D", "RigidBodyRotVecLG", "RigidBodyRxyz", "RigidBodyEP")
@@ -53,12 +53,7 @@ class RotorCoupling:
         require_choice("quantity", quantity, get_args(Quantity))
         options = IN_MEMORY | options
         if quantity == "heat":
-
-            def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
-                return [self.power(mbs, t)]
-
-            watch_powers(rate, ["heat"])
-            node = add_integrals(self.mbs, rate, [0.0])
+            node = add_works(self.mbs, {"heat": self.power})
             return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
 
         def value(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:

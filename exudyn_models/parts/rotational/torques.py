@@ -150,7 +150,8 @@ def add_torque_converter(
     Rows of the ``table`` contain the speed ratio ν = ω_turbine/ω_impeller, from 0 to 1, the factor K = ω/√T of the
     impeller in rad/s/√(N m), inf without torque, and the ratio of the turbine's torque to that of the impeller. 1/K²
     and the torque ratio are linear between the rows. The impeller loses T = ω|ω|/K². A faster turbine drives it as a
-    fluid coupling with the factor K(1/ν). A lock-up clutch is ``add_ring_friction`` between both rotors.
+    fluid coupling with the factor K(1/ν). If the turbine turns backward even faster, the torque ratio approaches 1. A
+    lock-up clutch is ``add_ring_friction`` between both rotors.
     """
     ratios, factors, gains = _checked_rows("table", real_numbers("table", table), (3,)).T
     if not (ratios[0] >= 0.0 and ratios[-1] <= 1.0 and factors.min() > 0.0 and gains.min() > 0.0):
@@ -163,7 +164,7 @@ def add_torque_converter(
         pump, driven = speeds
         if abs(driven) > abs(pump):
             moment = float(np.interp(pump / driven, ratios, capacities)) * driven * abs(driven)
-            return moment, -moment
+            return moment, -moment * float(np.interp(-pump / driven, (0.0, 1.0), (1.0, gains[0])))
         ratio = driven / pump if pump else 0.0
         moment = float(np.interp(ratio, ratios, capacities)) * pump * abs(pump)
         return -moment, moment * float(np.interp(ratio, ratios, gains))

@@ -37,7 +37,7 @@ class JumpCheck:
     """Checks the powers of a model in an implicit run."""
 
     def __init__(self, mbs: Any) -> None:
-        self._names, self._units, self._places = _powers(mbs)
+        self.names, self._units, self._places = _powers(mbs)
         self._times: list[float] = []
         self._rates: list[FloatArray] = []
         self._largest = 0.0
@@ -45,8 +45,6 @@ class JumpCheck:
 
     def look(self, t: float, rates: FloatArray) -> None:
         """Record all ``rates`` of the model at the time t (s)."""
-        if not self._names:
-            return
         self._times.append(t)
         self._rates.append(rates)
         if len(self._times) == TOGETHER:
@@ -88,7 +86,7 @@ class JumpCheck:
         start, end, power, size = max(jumps, key=lambda jump: jump[3])
         times = len({jump[0] for jump in jumps})
         warnings.warn(
-            f"the power {self._names[power]!r} jumps by {size:.3g} W between t = {start:.9g} s and {end:.9g} s"
+            f"the power {self.names[power]!r} jumps by {size:.3g} W between t = {start:.9g} s and {end:.9g} s"
             + (f", and powers do so in {times} steps of this run" if times > 1 else "")
             + f": the energy across that step may be wrong by {size * (end - start) / 2.0:.2g} J. If a load jumps "
             "there, pass its time to solve_dynamic, as breaks=[...]; otherwise use shorter steps",

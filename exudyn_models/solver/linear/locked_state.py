@@ -181,7 +181,7 @@ def linearise(mbs: Any) -> Linearisation:
                 for contact in contacts
                 if not isinstance(contact, SpringFlanks)
             )
-            return _about_initial_values(mbs, t, _turns_of(contacts), states)
+            return _about_initial_values(mbs, t, contacts, states)
     finally:
         for (state, accelerations), configuration in zip(before, configurations, strict=True):
             data.SetSystemState(state, configuration)
@@ -235,14 +235,40 @@ def _turns_of(contacts: Sequence[StickingContact]) -> list[tuple[int, NDArray[An
     return found
 
 
+def _slopes_by_loads(data: Any, contacts: Sequence[StickingContact]) -> FloatArray:
+    """Return the stiffness and damping of friction whose load is a moment that the motion determines, (2, n, n)."""
+    size = data.ODE2Size()
+    found = np.zeros((2, size, size))
+    states = (
+        (data.GetODE2Coordinates, data.SetODE2Coordinates),
+        (
+            data.GetODE2Coordinates_t,
+            data.SetODE2Coordinates_t,
+        ),
+    )
+    for contact in contacts:
+        law = contact.stick
+        if not isinstance(law, MomentLoadedStick) or not law.slides:
+            continue
+        by_load = law.slope_at(law.load, int(law.mode or 0)) * np.array(law.gradient([]))
+        for matrix, (read, write) in zip(found, states, strict=True):
+            now = read()
+            for i, change in enumerate(TURN * np.eye(size)):
+                loads = []
+                for way in (1.0, -1.0):
+                    write(now + way * change)
+                    loads.append(law.load)
+                matrix[contact.places, i] += by_load * (loads[0] - loads[1]) / (2.0 * TURN)
+            write(now)
+    return found
+
+
 def _about_initial_values(
-    mbs: Any,
-    t: float,
-    turns: Sequence[tuple[int, NDArray[Any], FloatArray]],
-    states: tuple[ContactState, ...],
+    mbs: Any, t: float, contacts: Sequence[StickingContact], states: tuple[ContactState, ...]
 ) -> Linearisation:
-    data = mbs.systemData
-    mass, stiffness, damping = matrices_of_model(mbs, t)
+    data, turns = mbs.systemData, _turns_of(contacts)
+    mass, *matrices = matrices_of_model(mbs, t)
+    stiffness, damping = _slopes_by_loads(data, contacts) + matrices
     if not data.AEsize():
         none = np.zeros((0, len(mass)))
         return Linearisation(t, mass, damping, stiffness, none, none, states)

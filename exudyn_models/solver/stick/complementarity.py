@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice, pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,11 @@ class Sets:
         counts = [self.blocks[i].stop - self.blocks[i].start for i in chosen]
         ends = np.cumsum([0, *counts]).tolist()
         return Sets([slice(*pair) for pair in pairwise(ends)], [self.laws[i] for i in chosen])
+
+    @property
+    def owner(self) -> NDArray[Any]:
+        """Number of the contact of each row, shape (k,)."""
+        return np.repeat(np.arange(len(self.blocks)), [rows.stop - rows.start for rows in self.blocks])
 
     def sizes(self, slips: FloatArray) -> FloatArray:
         """Return the size of the slip of each contact."""
@@ -145,17 +151,16 @@ def rest_or_slip(
     As few contacts as possible slip in the end, because some can rest only if others slip. Slip accelerations below
     ``noise`` count as zero.
     """
-    count = len(sets.blocks)
-    own = [np.linalg.norm(to_rates[rows, rows]) for rows in sets.blocks]
+    count, owner = len(sets.blocks), sets.owner
+    own = np.sqrt(np.bincount(owner, (to_rates**2 * (owner[:, None] == owner)).sum(axis=1), count))
     finite = np.where(np.isfinite(static), static, 0.0)
     least = np.maximum(SLIPS * np.maximum(own * finite.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
 
     def slips(slides: NDArray[np.bool_]) -> tuple[FloatArray, NDArray[np.bool_]]:
         limits = np.where(slides[:, None], sliding, static)
         forces, left = sets.forces(to_rates, rates, limits)
-        sizes = np.array([np.linalg.norm(forces[rows]) for rows in sets.blocks])
-        moves = sets.sizes(left) > np.maximum(least, SLIPS * np.array(own) * sizes)
-        return left, moves
+        terms = sets.sizes(np.abs(to_rates) @ np.abs(forces))
+        return left, sets.sizes(left) > np.maximum(least, SLIPS * terms)
 
     slides = np.zeros(count, dtype=bool)
     left, moves = slips(slides)
@@ -171,9 +176,7 @@ def rest_or_slip(
             if not found[rests].any():
                 left, moves = found_left, found
                 break
-    for rows, moved in zip(sets.blocks, moves, strict=True):
-        left[rows] *= moved
-    return left
+    return np.asarray(left * moves[owner])
 
 
 def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[int], FloatArray]:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.starting_rates import initialised_solver
@@ -52,8 +53,8 @@ class Dynamics:
         self._inverses: dict[tuple[bytes, bytes], FloatArray] = {}
         self.gradients, self.rates = np.empty((0, self._size)), np.empty(0)
 
-    def evaluate(self, t: float) -> None:
-        """Evaluate M, J, c and the inverse at the present state and the time t (s)."""
+    def evaluate(self, t: float, without: Sequence[int] | NDArray[Any] = ()) -> None:
+        """Evaluate M, J, c and the inverse at the present state and the time t (s), ``without`` some constraints."""
         data, size, solver = self._data, self._size, self._solver
         data.SetTime(t)
         solver.ComputeMassMatrix(self._mbs)
@@ -62,6 +63,7 @@ class Dynamics:
             solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
             solver.ComputeJacobianAE(self._mbs, 1.0, 1.0, 1.0)
             self.gradients = np.array(solver.GetSystemJacobian())[-self._count :, :size]
+            self.gradients[list(without)] = 0.0
             self.rates = self._prescribed_rates(t) if self.gradients.any() else np.zeros(self._count)
         key = self.mass.tobytes(), self.gradients.tobytes()
         if key not in self._inverses:
@@ -79,8 +81,12 @@ class Dynamics:
             data.SetODE2Coordinates(q + i * self.difference * velocities)
             data.SetTime(t + i * self.difference)
             slips.append(self._slips_of_constraints())
+            if i == 1 and (slips[0] == slips[1]).all():  # bit by bit, so they depend on nothing
+                break
         data.SetODE2Coordinates(q)
         data.SetTime(t)
+        if len(slips) == 2:
+            return np.zeros(self._count)
         rates = np.array([11.0, -18.0, 9.0, -2.0]) @ np.array(slips) / (6.0 * self.difference)
         return np.where(self.gradients.any(axis=1), rates, 0.0)
 

@@ -25,7 +25,12 @@ from exudyn_models.solver.stick.resting import Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
-from exudyn_models.solver.stick.sticking_contacts import PlanarContact, SpringFlanks, StickingContact
+from exudyn_models.solver.stick.sticking_contacts import (
+    LEAST,
+    PlanarContact,
+    SpringFlanks,
+    StickingContact,
+)
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
@@ -42,7 +47,7 @@ NEAR = 0.02
 """Unused share of capacity below which loads are computed again, because the loads in Exudyn's steps contain
 errors."""
 
-AHEAD = 1e-9
+AHEAD = 1e-5
 """Share of a step to look ahead for the flank of a spring that is pressed."""
 
 GROWN = 10.0
@@ -79,6 +84,9 @@ class ModeChoice:
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
+        self._holding, self._limits = np.zeros(len(contacts)), np.zeros((len(contacts), 2))
+        for i, contact in enumerate(contacts):
+            self._holding[i], self._limits[i] = contact.strength(t)
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
@@ -131,10 +139,10 @@ class ModeChoice:
             contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
             contact.motion(self._mbs)
-        self._dynamics.evaluate(t)
+        self._dynamics.evaluate(t, self._places)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
-        self._holding = np.array([contact.holding(t) for contact in self._contacts])
-        self._limits = np.array([contact.capacities(t) for contact in self._contacts]).reshape(-1, 2)
+        for i in self._varying:
+            self._holding[i], self._limits[i] = self._contacts[i].strength(t)
         bounds = slips.bounds(self._present()[1], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
         still[self._one_way] |= slips.now[[slips.sets.blocks[i].start for i in self._one_way]] < 0.0
@@ -147,9 +155,8 @@ class ModeChoice:
         for contact, mode, rows in zip(self._contacts, modes, slips.sets.blocks, strict=True):
             if mode == Mode.LOCKED and contact.stick.slides:
                 self._slipped.add(contact)
-            if contact.mode == Mode.LOCKED:
-                own = range(rows.start, rows.stop)
-                contact.enter(self._mbs, Mode.LOCKED, [i for i, row in enumerate(own) if row in held])
+            own = range(rows.start, rows.stop) if contact.mode == Mode.LOCKED else ()
+            contact.lock(self._mbs, [i for i, row in enumerate(own) if row in held])
         firsts = [rows.start for rows in slips.sets.blocks]
         self._rows = slips.rows[firsts]
         self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
@@ -188,7 +195,7 @@ class ModeChoice:
             before = np.concatenate((forces, self._holding))
             self._dynamics.store(accelerations, constraints, configurations)
             for i in self._varying:
-                self._holding[i] = self._contacts[i].holding(t)
+                self._holding[i] = self._contacts[i].strength(t)[0]
             now = np.concatenate((self._dynamics.forces(), self._holding))
             if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
                 return
@@ -283,7 +290,7 @@ class ModeChoice:
         contacts = [self._contacts[i] for i in still]
         rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
         for i in self._varying:
-            self._limits[i] = self._contacts[i].capacities(t)
+            self._limits[i] = self._contacts[i].strength(t)[1]
         static = self._limits[list(still)]
         ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
         overloads = np.array([contact in self._overloaded for contact in contacts])
@@ -335,24 +342,35 @@ class ModeChoice:
     def margins(self, t: float) -> FloatArray:
         """Return numbers that fall below zero when the present modes end, shape (contacts + springs,).
 
-        They are the slip in the direction of sliding (m/s or rad/s), the unused share of the capacity of contacts at
-        rest, or ±1 without load or coefficient.
+        They are the slip in the direction of sliding (m/s or rad/s), or the unused share of the capacity of contacts
+        at rest. They change their sign where friction vanishes or begins.
         """
         if self._line is not None:
             now = self._line.margins(self._data)
-            if (now[self._resting.alone] >= NEAR).all():
+            if now.min() >= NEAR or (now[self._resting.alone] >= NEAR).all():
                 return now
-        springs = [spring.margin(self._mbs, t) for spring in self._springs]
+        springs = [spring.margin(self._mbs) for spring in self._springs]
         return np.append(self._margins_of_contacts(t), springs)
 
     def _margins_of_contacts(self, t: float) -> FloatArray:
         slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
         margins: FloatArray = self._offsets + self._directions * slips
+        changed = []
         for i in self._varying:
-            margins[i] = self._contacts[i].margin(self._mbs, t)
-            self._limits[i] = self._contacts[i].capacities(t)
-        if not self._resting.rows:
-            return margins
+            contact = self._contacts[i]
+            if not len(contact.stick.weights):  # the gradient of the slip turns
+                margins[i] = contact.margin(self._mbs)
+            holding, self._limits[i] = contact.strength(t)
+            if (holding == 0.0) != (contact.mode == Mode.OPEN):
+                changed.append(i)
+        if self._resting.rows:
+            margins = np.minimum(margins, np.maximum(self._checked_left(t), -1.0))  # finite without friction
+        # A jump to minus the same size has no root that interpolation could mistake for it.
+        margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
+        return margins
+
+    def _checked_left(self, t: float) -> FloatArray:
+        """Return ``_left``, by new loads if one is nearly overloaded."""
         left = self._left(t)
         least = left.min()
         if least < NEAR:
@@ -367,7 +385,7 @@ class ModeChoice:
                 )
             self._data.SetAECoordinates(before[0])
             self._data.SetODE2Coordinates_tt(before[1])
-        return np.minimum(margins, np.maximum(left, -1.0))  # finite where friction vanishes
+        return left
 
     def _left(self, t: float) -> FloatArray:
         """Return the unused shares of capacities, 1 in slip; for a one-way clutch this share is continuous."""

@@ -57,6 +57,7 @@ class PlanarStick(AxialStick):
 
     def __post_init__(self) -> None:
         self._evaluated: tuple[list[float], FloatArray] = [], np.empty((0, 0))
+        self._motion: tuple[tuple[bytes, ...], SlipMotion] | None = None
         self.renew()
 
     def renew(self) -> None:
@@ -97,7 +98,11 @@ class PlanarStick(AxialStick):
 
     def motion(self, q: FloatArray, q_t: FloatArray, q_tt: FloatArray) -> SlipMotion:
         """Return the motion for coordinates without reference values."""
-        return SlipMotion(*slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt))
+        state = q.tobytes(), q_t.tobytes(), q_tt.tobytes()
+        if self._motion is None or state != self._motion[0]:  # each step starts where the last one has ended
+            found = slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt)
+            self._motion = state, SlipMotion(*found)
+        return self._motion[1]
 
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
         """Return the rates of the locked slips without accelerations, shape (k,)."""
@@ -158,11 +163,11 @@ class PlanarStick(AxialStick):
             return self._sliding[0](mbs, t, item, q, q_t)
         return self._linear(t, q, q_t, 0.0, 0.0)[0].tolist()
 
-    def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
+    def start_step(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> None:
         """Prepare the first iteration of a step."""
         self.predicts = self.slides
         if self.predicts:
-            start = self.motion(q, q_t, np.zeros(len(q)))
+            start = self.motion(*state)
             # A prescribed motion begins without slip.
             self._start = start if start.potential > 0.0 else start._replace(slip=NEGLIGIBLE * self.direction)
 

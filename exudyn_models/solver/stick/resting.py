@@ -54,7 +54,7 @@ class Group:
         """
         held = -self.mbs.systemData.GetAECoordinates()[self.places]
         limits = [
-            (0.0, 0.0) if isinstance(contact.stick, GrowingLimit) else contact.capacities(t)
+            (0.0, 0.0) if isinstance(contact.stick, GrowingLimit) else contact.strength(t)[1]
             for contact in self.contacts
         ]
         start = np.concatenate((held, np.zeros(len(self.by_chosen))))

@@ -38,22 +38,19 @@ class SlipMotion(NamedTuple):
 
     ``slip`` is (u, S) in m/s and rad/s, ``rate`` its derivative and ``bias`` this rate without accelerations, J̇·q̇.
     ``gradient`` contains the derivatives of P with respect to the slip, zero at rest; all have the shape (3,).
-    ``radius`` is the distance of the disc's centre from the master's axis in m, ``rate_potential`` P of the rate in
-    m/s², and ``largest_term`` the largest speed in the sum of the slip in m/s, which determines its rounding error.
+    ``potential`` is P in m/s, ``radius`` the distance of the disc's centre from the master's axis in m, and
+    ``rate_potential`` P of the rate in m/s². ``largest_term`` in m/s is the largest speed in the sum of the slip. It
+    determines the rounding error.
     """
 
     slip: FloatArray
     rate: FloatArray
     bias: FloatArray
     gradient: FloatArray
+    potential: float
     radius: float
     rate_potential: float
     largest_term: float
-
-    @property
-    def potential(self) -> float:
-        """Slip potential P in m/s."""
-        return float(self.gradient @ self.slip)
 
     @property
     def remaining(self) -> float:
@@ -74,7 +71,7 @@ class SlipMotion(NamedTuple):
 @compiled
 def _slip_motion(
     kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, q_tt: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float, float]:
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float, float, float]:
     to_slip, _, _, (x, y) = slip_and_place(kinds, q)
     stepped = q.astype(np.complex128)
     rates = _coordinate_rates(kinds, q, q_t)
@@ -91,11 +88,12 @@ def _slip_motion(
             bias[i] += stepped_map[i, k].imag / IMAGINARY_STEP * q_t[k]
             rate[i] += to_slip[i, k] * q_tt[k]
         rate[i] += bias[i]
-    friction = _unit_friction(slip, contact)
+    friction, potential = _unit_friction(slip, contact), 0.0
     for i in range(3):
         gradient[i] = -friction[i]
+        potential += gradient[i] * slip[i]
     rate_potential = slip_potential_of_contact(rate[0], rate[1], rate[2], 0.0, contact)
-    return slip, rate, bias, gradient, math.sqrt(x * x + y * y), rate_potential, largest
+    return slip, rate, bias, gradient, potential, math.sqrt(x * x + y * y), rate_potential, largest
 
 
 @compiled

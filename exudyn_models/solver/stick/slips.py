@@ -32,9 +32,16 @@ class Slips:
         own = [contact.rows_and_bias(state) for contact in contacts]
         ends = np.cumsum([0, *(len(bias) for _, bias in own)]).tolist()
         self.sets = Sets([slice(*pair) for pair in pairwise(ends)], [contact.law for contact in contacts])
-        self.rows, self._bias = np.zeros((ends[-1], size)), np.zeros(ends[-1])
-        for contact, rows, (gradients, bias) in zip(contacts, self.sets.blocks, own, strict=True):
-            self.rows[rows, contact.places], self._bias[rows] = gradients, bias
+        self.rows, self._bias = (
+            np.zeros((ends[-1], size)),
+            np.concatenate([np.empty(0), *(bias for _, bias in own)]),
+        )
+        columns = [contact.places for contact, (rows, _) in zip(contacts, own, strict=True) for _ in rows]
+        owner = np.repeat(np.arange(len(columns)), list(map(len, columns)))
+        none = np.empty(0, dtype=int)
+        self.rows[owner, np.concatenate([none, *columns])] = np.concatenate(
+            [none, *(g.ravel() for g, _ in own)]
+        )
         #: Slips (m/s or rad/s) before any change by ``give``.
         self.now = self.rows @ self._velocities
         self._to_velocities = dynamics.inverse[:size, :size] @ self.rows.T
@@ -42,7 +49,7 @@ class Slips:
         lengths = self.rows**2 @ mobilities(dynamics.mass)
         fixed = np.diag(self.to_rates) <= DEPENDENT * lengths
         self.to_rates[fixed] = self.to_rates[:, fixed] = 0.0
-        self.prescribed = np.array([fixed[rows].all() for rows in self.sets.blocks], dtype=bool)
+        self.prescribed = np.asarray(np.bincount(self.sets.owner, ~fixed, len(contacts)) == 0.0)
         for contact, rows in zip(contacts, self.sets.blocks, strict=True):
             if isinstance(contact, PlanarContact):
                 contact.allow(self.to_rates[rows, rows], lengths[rows])

@@ -18,7 +18,7 @@ from exudyn_models.solver.rows.laws import LEAST as UNLOADED
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, RotaryLaw
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, PlanarStick
+from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, TINY, PlanarStick
 from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from reference_model.systems import FloatArray
 
@@ -80,16 +80,19 @@ class StickingContact:
         assert self.stick.mode is not None
         return self.stick.mode
 
-    def enter(self, mbs: Any, mode: Mode, locks: Sequence[int] = ()) -> None:
-        """Switch to a mode; constraints hold the directions ``locks`` of slip, and others the rest."""
-        self.stick.mode, before = mode, self.stick.entered
-        if before == (mode, *locks):
-            return
-        self.stick.entered = mode, *locks
-        for i, lock in enumerate(self.stick.locks):
-            mbs.SetObjectParameter(lock, "activeConnector", i in locks)
-        if before[:1] != (mode,) and (forces := self.stick.constant_forces) is not None:
+    def enter(self, mbs: Any, mode: Mode) -> None:
+        """Switch to a mode, without its locks."""
+        before, self.stick.mode, self.stick.entered = self.stick.entered, mode, mode
+        if before != mode and (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
+
+    def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
+        """Let constraints hold these directions of slip."""
+        before = self.stick.held
+        self.stick.held = tuple(i in directions for i in range(len(self.stick.locks)))
+        if self.stick.held != before:
+            for lock, holds in zip(self.stick.locks, self.stick.held, strict=True):
+                mbs.SetObjectParameter(lock, "activeConnector", holds)
 
     def omit_user_functions(self, mbs: Any) -> None:
         """Let Exudyn evaluate constant moments itself."""
@@ -122,25 +125,23 @@ class StickingContact:
         """Return the projection of forces along the locks onto forces that joints cannot carry, shape (k, k)."""
         return np.eye(1)
 
-    def holding(self, t: float) -> float:
-        """Return the static friction, a moment in N m."""
-        return self.stick.without_rounding(max(self.stick.limits(t)))
+    def strength(self, t: float) -> tuple[float, tuple[float, float]]:
+        """Return the static friction, a moment in N m, and its limits against sliding forward and backward.
 
-    def capacities(self, t: float) -> tuple[float, float]:
-        """Return the largest moments in N m against sliding forward and backward, > 0 of a one-way clutch too."""
+        The limits are > 0, also without friction and for a one-way clutch.
+        """
         forward, backward = self.stick.limits(t)
-        least = max(FREE * max(forward, backward), LEAST)
-        return max(forward, least), max(backward, least)
-
-    def opens_or_closes(self, holding: float) -> bool:
-        """Return whether static friction has vanished, or acts on an open contact."""
-        return (holding == 0.0) != (self.mode == Mode.OPEN)
+        largest = max(forward, backward)
+        least = max(FREE * largest, LEAST)
+        return self.stick.without_rounding(largest), (max(forward, least), max(backward, least))
 
     def rows_and_bias(self, state: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Return the gradients of the locked slips, shape (k, n), and their rates without accelerations, shape (k,).
 
         ``state`` contains the coordinates of the model, without reference values, and their derivatives.
         """
+        if len(self.stick.weights):
+            return self.stick.weights[None], np.zeros(1)
         q, q_t = state
         own = q[self.places], q_t[self.places], np.zeros(len(self.places))
         return self.stick.rows(self.stick.reference + own[0]), self.stick.bias(own)
@@ -154,22 +155,17 @@ class StickingContact:
             data.GetODE2Coordinates_tt(configuration)[places],
         )
 
-    def margin(self, mbs: Any, t: float) -> float:
-        """Return a number that falls below zero when the present mode ends.
-
-        It is the slip in the direction of sliding (rad/s), 1 at rest, or ±1 without load or coefficient.
-        """
-        if self.opens_or_closes(self.holding(t)):
-            return -1.0
+    def margin(self, mbs: Any) -> float:
+        """Return the slip in the direction of sliding (rad/s), which falls below zero when it ends, or 1."""
         return int(self.mode) * self.stick.slip(*self._state(mbs)[:2]) if self.stick.slides else 1.0
 
 
 class RotorCoupling(StickingContact):
     """One-way clutch, mesh or contact whose load grows with a moment, which never opens."""
 
-    def holding(self, t: float) -> float:
-        """Return a moment in N m without effect on the choice of modes; the true limits depend on the moments."""
-        return UNLOADED
+    def strength(self, t: float) -> tuple[float, tuple[float, float]]:
+        """Return a moment in N m without effect on the choice of modes, and the limits by the present moments."""
+        return UNLOADED, super().strength(t)[1]
 
 
 class SpringFlanks(StickingContact):
@@ -185,7 +181,7 @@ class SpringFlanks(StickingContact):
         twist, rate = self._motion(mbs)
         self.flanks.mode = self.flanks.pressed(twist + ahead * rate, rate)
 
-    def margin(self, mbs: Any, t: float) -> float:
+    def margin(self, mbs: Any) -> float:
         """Return a moment in N m that falls below zero when the pressed flank changes."""
         return self.flanks.margin(*self._motion(mbs))
 
@@ -239,18 +235,15 @@ class PlanarContact(StickingContact):
         """Return a dimensionless gradient of P."""
         return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
 
-    def holding(self, t: float) -> float:
-        """Return the static friction in N."""
-        return self.planar.without_rounding(self.planar.holding_force(t))
+    def strength(self, t: float) -> tuple[float, tuple[float, float]]:
+        """Return the static friction in N, and twice the same, > 0."""
+        holding = self.planar.without_rounding(self.planar.holding_force(t))
+        return holding, (max(holding, TINY),) * 2
 
     def effective(self) -> FloatArray:
         """Return the projection of forces along the locks onto forces that joints cannot carry, shape (k, k)."""
         axes = self.planar.allowed[: self.planar.most_locks] * self.planar.scales[:, None]
         return np.asarray(axes @ axes.T)
-
-    def capacities(self, t: float) -> tuple[float, float]:
-        """Return the static friction in N twice, > 0."""
-        return (max(self.holding(t), np.finfo(float).tiny),) * 2
 
     def shares(self, forces: FloatArray, limits: FloatArray) -> tuple[Sequence[float], Sequence[FloatArray]]:
         """Return the share of the ``limits`` of forces along the locks, and its slope."""
@@ -267,8 +260,7 @@ class PlanarContact(StickingContact):
 
     def start_step(self, mbs: Any) -> None:
         """Prepare the friction for the next step."""
-        q, q_t, _ = self._state(mbs)
-        self.planar.start_step(q, q_t)
+        self.planar.start_step(self._state(mbs))
 
     def slid(self, mbs: Any) -> SlipMotion:
         """Return the present motion, and store its direction as the mode."""
@@ -276,13 +268,11 @@ class PlanarContact(StickingContact):
         self.stick.mode = self.sliding_mode(motion.slip)
         return motion
 
-    def margin(self, mbs: Any, t: float) -> float:
-        """Return ±1, or a number that falls below zero when the slip of a held contact begins or vanishes.
+    def margin(self, mbs: Any) -> float:
+        """Return 1, or a number that falls below zero when the slip of a held contact begins or vanishes.
 
         ``sliding_steps`` finds the end of sliding.
         """
-        if self.opens_or_closes(self.holding(t)):
-            return -1.0
         if self.stick.slides:
             return 1.0 if self.free_to_slide else self.slid(mbs).potential / STILL - 0.5
         if self.mode == Mode.OPEN or self.planar.allowed.shape[1] == self.planar.most_locks:
@@ -363,9 +353,11 @@ def running(mbs: Any, contacts: Sequence[StickingContact]) -> Iterator[None]:
     """Let contacts stick and slide in a run, at first without friction."""
     try:
         for contact in contacts:
-            contact.stick.running, contact.stick.largest, contact.stick.entered = True, 0.0, ()
+            contact.stick.running, contact.stick.largest = True, 0.0
+            contact.stick.entered = contact.stick.held = None
             contact.omit_user_functions(mbs)
             contact.enter(mbs, Mode.OPEN)
+            contact.lock(mbs)
         yield
     finally:
         for contact in contacts:

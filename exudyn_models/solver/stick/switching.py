@@ -7,6 +7,7 @@ Between two changes the equations are smooth. A step that passes a change is rep
 import copy
 import math
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from typing import Any
 
 import exudyn as exu
@@ -92,8 +93,9 @@ class _Run:
     def run(self, before: Sequence[Mode]) -> None:
         """Run to the end of the settings and leave it as the initial values."""
         mbs = self._mbs
+        calls_before = bool(self._planar) or bool(mbs.GetPreStepUserFunction())
         with (
-            user_function(mbs, "PreStep", self._before_step),
+            user_function(mbs, "PreStep", self._before_step) if calls_before else nullcontext(),
             user_function(mbs, "PostStep", self._after_step),
         ):
             self._choose_accuracy()
@@ -122,7 +124,7 @@ class _Run:
             # The direction of friction turns too fast for an old Jacobian.
             newton.useModifiedNewton = False
             self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
-            friction = max(contact.holding(self._start) for contact in self._planar)
+            friction = max(contact.strength(self._start)[0] for contact in self._planar)
             newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
@@ -326,12 +328,14 @@ class _SensorRows:
 
     def __init__(self, settings: Any, start: float, step: float) -> None:
         self._settings, self._next, self._step = settings, start, step
-        self._wanted, self._period = settings.active, settings.writePeriod
-        settings.writePeriod = 0.0
+        self._wanted = self._on = settings.active
+        self._period, settings.writePeriod = settings.writePeriod, 0.0
 
     def switch(self, on: bool) -> None:
         """Switch rows on or off from the next step on, if the user wants any."""
-        self._settings.active = self._wanted and on
+        on = self._wanted and on
+        if on != self._on:
+            self._settings.active = self._on = on
 
     def is_due(self, t: float) -> bool:
         """Return whether a row is due at the time t (s); if so, advance to the next row."""

@@ -1,10 +1,12 @@
 """Friction whose load grows with a moment: self-energising brakes and ball ramps, against closed forms."""
 
+import math
+
 import numpy as np
 import pytest
 from free_bodies import changes_of, drive, new_model, rate_of, rotor
 
-from exudyn_models import add_gear, add_ring_friction, linearise
+from exudyn_models import add_gear, add_ring_friction, add_torsional_spring, linearise
 from reference_model.trajectory import SimulationError
 
 FACING = {"contact_radius": 0.1, "friction_coefficient": 0.3}  # arm 0.03 m
@@ -36,6 +38,17 @@ def test_a_leading_shoe_trails_backward():
     leading, trailing = 24.0 / (1.0 - 0.3), 24.0 / (1.0 + 0.3)
     assert (stop, mode) == (pytest.approx(2.0 * 0.5 / (leading + 25.0), abs=1e-9), -1)
     assert rate_of(mbs, wheel) == pytest.approx(-(25.0 - trailing) / 0.5 * (0.5 - stop), abs=1e-8)
+
+
+@pytest.mark.parametrize(("way", "tension"), [(1.0, math.exp(1.2) - 1.0), (-1.0, 1.0 - math.exp(-1.2))])
+def test_a_band_brake_pulls_more_in_the_direction_of_its_fixed_end(way, tension):
+    """The wrap angle is 4 rad, and μ = 0.3; 50 N pull at the slack end."""
+    mbs = new_model()
+    drum = rotor(mbs, 0.5, 2.0 * way)
+    band = {"friction_coefficient": 1.0 - math.exp(-1.2), "load_gain": (0.0, 1.0 / 0.1)}
+    add_ring_friction(mbs, None, drum, contact_radius=0.1, normal_load=50.0, **band)
+    ((stop, *_, mode),) = changes_of(mbs, 1.0, STEP)
+    assert (stop, mode) == (pytest.approx(2.0 * 0.5 / (5.0 * tension), abs=1e-9), 0)
 
 
 def test_a_brake_whose_friction_falls_with_slip_follows_its_equation():
@@ -86,6 +99,26 @@ def test_the_linearisation_turns_a_gear_whose_moment_loads_a_sliding_brake():
     assert changes_of(mbs, 0.1, STEP) == []
     # (J₁ + J₂/4)·ω₁' = 6 − 0.3 − 0.6·T, with T = J₂·ω₁'/4.
     assert rate_of(mbs, shafts[0]) == pytest.approx(3.0 + 0.1 * 5.7 / (1.5 + 0.6 * 0.5), abs=1e-8)
+
+
+def test_the_linearisation_contains_the_slope_of_a_load_that_follows_a_slip_or_a_twist():
+    """The load of the brake falls with the slip of the pilot, and grows with the twist of the spring."""
+    mbs = new_model()
+    shafts = [rotor(mbs, 1.0, spin) for spin in (1.0, 3.0)]
+    falling = {"contact_radius": 0.1, "friction_coefficient": lambda slip_speed: 0.3 - 0.5 * slip_speed}
+    pilot = add_ring_friction(mbs, *shafts, **falling, normal_load=100.0)
+    add_ring_friction(mbs, None, shafts[1], **FACING, normal_load=0.0, load_gain=50.0, load_part=pilot)
+    slope = 0.5 * 0.1 * 0.1 * 100.0
+    assert linearise(mbs).damping == pytest.approx(
+        slope * np.array([[-1.0, 1.0], [1.0, -1.0]]) - 1.5 * slope * np.array([[0.0, 0.0], [-1.0, 1.0]]),
+        abs=1e-8,
+    )
+    mbs = new_model()
+    shaft = rotor(mbs, 1.0, 3.0, 0.2)
+    spring = add_torsional_spring(mbs, None, shaft, stiffness=40.0, damping=2.0, backlash=0.1)
+    add_ring_friction(mbs, None, shaft, **FACING, normal_load=0.0, load_gain=20.0, load_part=spring)
+    state = linearise(mbs)
+    assert (state.stiffness[0, 0], state.damping[0, 0]) == pytest.approx((1.6 * 40.0, 1.6 * 2.0), abs=1e-7)
 
 
 def test_other_parts_and_bodies_are_refused():
