@@ -25,12 +25,7 @@ from exudyn_models.solver.stick.resting import Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
-from exudyn_models.solver.stick.sticking_contacts import (
-    LEAST,
-    PlanarContact,
-    SpringFlanks,
-    StickingContact,
-)
+from exudyn_models.solver.stick.sticking_contacts import LEAST, PlanarContact, SpringFlanks, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
