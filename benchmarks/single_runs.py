@@ -3,21 +3,21 @@
 Run with ``python benchmarks/single_runs.py``; takes about 30 s, more if the core is not compiled yet. Times are
 the shortest processor times of several calls, in ms, at a tolerance of 1e-9.
 
-Measured on a busy machine, on a core with AVX-512:
+Measured on a core with AVX-512:
 
 | motion | requested times | in Python, ms | compiled, ms | ratio |
 |---|---|---|---|---|
-| Fig. 5, sticks nine times, to t = 500 s | 2 | 483 | 2.64 | 183 |
-| | 501 | 631 | 2.90 | 217 |
-| | 5,001 | 987 | 3.90 | 253 |
-| Fig. 11, ring, to t = 100 s | 2 | 19.6 | 0.38 | 52 |
-| | 501 | 59.8 | 0.49 | 122 |
-| | 5,001 | 165 | 0.81 | 204 |
-| the same with a hard stop | 5,001 | 196 | 0.85 | 230 |
-| Fig. 11, six points, to t = 100 s | 2 | 32.4 | 0.66 | 49 |
-| | 501 | 79.5 | 0.80 | 100 |
-| | 5,001 | 195 | 1.14 | 171 |
-| the same, starting with a point at rest | 501 | 342 | 2.30 | 149 |
+| Fig. 5, sticks nine times, to t = 500 s | 2 | 262 | 2.28 | 115 |
+| | 501 | 409 | 2.66 | 154 |
+| | 5,001 | 928 | 3.96 | 234 |
+| Fig. 11, ring, to t = 100 s | 2 | 18.3 | 0.38 | 48 |
+| | 501 | 71.2 | 0.54 | 131 |
+| | 5,001 | 177 | 0.86 | 206 |
+| the same with a hard stop | 5,001 | 177 | 0.90 | 197 |
+| Fig. 11, six points, to t = 100 s | 2 | 32.3 | 0.66 | 49 |
+| | 501 | 91.3 | 0.86 | 107 |
+| | 5,001 | 199 | 1.19 | 168 |
+| the same, starting with a point at rest | 501 | 371 | 2.42 | 153 |
 """
 
 from __future__ import annotations
