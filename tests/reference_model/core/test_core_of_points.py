@@ -15,7 +15,7 @@ from reference_model.core.forces.rates import growth, rates
 from reference_model.core.limit import LEAST_SLIP, direction_of_points, pivot_from_rest, spare_of_points
 from reference_model.core.memory import seen
 from reference_model.core.single import law_of
-from reference_model.core.steps.collocation import jacobian_at
+from reference_model.core.steps.collocation import NODES, jacobian_at, newton_matrix, put_places, residual_of
 from reference_model.core.units import Units
 
 SEEDS = (*range(2, 50, 6), 188, 302)
@@ -77,6 +77,25 @@ def test_rates_and_their_derivatives_do_not_depend_on_the_point_whose_slip_is_an
     moved = tuple(a + h / pace * b for a, b in zip(y, rates(*y[:6], centre), strict=True))
     slip = (np.array(seen(moved, centre, law)[2:4]) - values[2:4]) / h
     assert growth(*values, law)[:2] == pytest.approx(slip, abs=1e-5)
+
+
+@pytest.mark.parametrize("point", [-1, 0, 2])
+def test_newton_matrix_of_collocation_contains_the_derivatives_of_its_residual(point):
+    law, rng, h = seen_from(point, 0.0, law_on(8)), np.random.default_rng(0), 0.02
+    start = np.array([0.2, -0.1, 0.3, 0.1, -0.4, 0.7])
+
+    def residual(slip):
+        values = np.zeros((NODES, 6))
+        values[:, 2:5] = slip
+        put_places(values, start, h, law)
+        return residual_of(values, start, h, 3, law), values
+
+    slip = start[2:5] + 0.05 * rng.normal(size=(NODES, 3))
+    matrix = newton_matrix(residual(slip)[1], h, 3, law)
+    for column in range(3 * NODES):
+        change = 1e-6 * np.eye(3 * NODES)[column].reshape(NODES, 3)
+        difference = (residual(slip + change)[0] - residual(slip - change)[0]) / 2e-6
+        assert matrix[:, column] == pytest.approx(difference, abs=0.1 * h**3)
 
 
 def test_friction_holds_up_to_the_limit_surface():

@@ -13,6 +13,7 @@ from random_systems import SYSTEMS, TIMES, RandomMotion
 
 from reference_model import DiscOnDisc, simulate
 from reference_model.contact.points import PointsOnRing
+from reference_model.core import stiff
 
 seeds = pytest.mark.parametrize("seed", range(SYSTEMS))
 every_fourth, every_other_fourth = (pytest.mark.parametrize("seed", range(n, SYSTEMS, 4)) for n in (1, 3))
@@ -51,6 +52,15 @@ def test_a_step_of_either_method_ends_where_the_forces_have_a_kink(seed, toleran
     run = motion(seed)
     states, tight = (simulate(run.system, run.start, TIMES, tolerance=t).states for t in (tolerance, 1e-13))
     assert np.abs(states - tight).max() < 13.0 * tolerance
+
+
+def test_slip_from_rest_ends_its_first_steps_at_a_kink(monkeypatch):
+    run = motion(1698)
+    found = []
+    for first in (stiff.FIRST_SPAN, 1e-4):
+        monkeypatch.setattr(stiff, "FIRST_SPAN", first)
+        found.append(simulate(run.system, run.start, TIMES, compiled=False).states)
+    assert np.abs(found[0] - found[1]).max() < 13e-9
 
 
 def test_motions_take_little_work():
