@@ -81,6 +81,29 @@ def ahead(coefficients: FloatArray, h: float, before: float) -> FloatArray:
     return guess
 
 
+@part
+def attempted(
+    start: FloatArray,
+    h: float,
+    guess: FloatArray,
+    least: float,
+    tolerance: float,
+    memory: FloatArray,
+    law: Law,
+) -> tuple[float, FloatArray, bool]:
+    """Return the error in tolerances and the coefficients of a step by collocation, and whether it meets a kink.
+
+    The error is infinite if Newton's method fails, or if a step longer than ``least`` crosses a kink of the forces.
+    """
+    memory[WORK] += WORK_OF_STEP
+    memory[EVALUATIONS] += 40.0
+    solved, values = solve(start, h, guess, law)
+    if not solved or (h > least and crosses_any(values, memory, law)):
+        return math.inf, values, solved
+    found = series(start, values)
+    return error_of(found, tolerance, law), found, False
+
+
 @written_out
 def slip_stiffly(
     y: Unknowns,
@@ -101,17 +124,10 @@ def slip_stiffly(
             break
         start = six(y)
         h = min(h, end - y[6])
-        guess = ahead(coefficients, h, before) if known else np.full((NODES, 1), 1.0) * start
-        memory[WORK] += WORK_OF_STEP
-        memory[EVALUATIONS] += 40.0
-        solved, values = solve(start, h, guess, law)
-        error, found = math.inf, coefficients
-        if solved:
-            found = series(start, values)
-            error = error_of(found, tolerance, law)
-        kink = solved and crosses_any(values, memory, law)
-        if not error <= 1.0 or kink:
-            h *= max(0.1, 0.8 * error**-0.125) if solved and not kink else 0.3
+        guess = ahead(coefficients, h, before) if known else np.ones((NODES, 1)) * start
+        error, found, _ = attempted(start, h, guess, 0.0, tolerance, memory, law)
+        if not error <= 1.0:
+            h *= max(0.1, 0.8 * error**-0.125) if error < math.inf else 0.3
             if h < explicit:
                 memory[PATIENCE] *= 2.0
                 return y
@@ -168,18 +184,11 @@ def begin_slip(
                 guess[i, 2] = s * (n[0] + place * tx)
                 guess[i, 3] = s * (n[1] + place * ty)
                 guess[i, 4] = s * (n[2] + place * tr) if law.point == CENTRE else start[4] + place * growing
-        memory[WORK] += WORK_OF_STEP
-        memory[EVALUATIONS] += 40.0
-        solved, values = solve(start, h, guess, law)
-        error, found = math.inf, coefficients
-        if solved:
-            found = series(start, values)
-            error = error_of(found, 0.1 * tolerance, law)
-        kink = solved and h > BRIEF and crosses_any(values, memory, law)
+        error, found, kink = attempted(start, h, guess, BRIEF, 0.1 * tolerance, memory, law)
         if kink and known:
             break
-        if not error <= 1.0 or kink:
-            h *= max(0.25, 0.8 * error**-0.125) if solved and not kink else 0.25
+        if not error <= 1.0:
+            h *= max(0.25, 0.8 * error**-0.125)
             if h < LEAST_SPAN:
                 memory[STATUS] = FAILS
                 break

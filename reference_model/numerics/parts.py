@@ -37,7 +37,7 @@ def inlined(function: Function) -> Function:
 
 
 def written_out(function: Function) -> Function:
-    """Register a function for inlining, because LLVM optimises called functions again in callers of their callers."""
+    """Register a part for insertion into its caller, because LLVM optimises a called part again with each caller."""
     WRITTEN_OUT.append(part(function))
     return function
 

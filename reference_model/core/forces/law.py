@@ -1,9 +1,10 @@
 """Scaled parameters of a motion, and the point of the body whose velocity is an unknown."""
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from reference_model.numerics.parts import part
+from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
 CENTRE = -1
@@ -55,6 +56,13 @@ class Law(NamedTuple):
     arm_y: float
     share: float
     sense: float
+
+
+@inlined
+def arm(angle: float, law: Law) -> tuple[float, float]:
+    """Return the arm of the point that ``law`` follows, relative to the centre."""
+    c, s = math.cos(angle), math.sin(angle)
+    return c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
 
 
 @part

@@ -8,7 +8,7 @@ degree of freedom is not stiff.
 
 import math
 
-from reference_model.core.forces.law import WIDTH, Law
+from reference_model.core.forces.law import WIDTH, Law, arm
 from reference_model.numerics.parts import part
 
 
@@ -18,7 +18,7 @@ def turning(
 ) -> tuple[float, float, float, float, float]:
     """Return the rate of r, and B and G⁻¹B for the acceleration of the centre by everything but friction."""
     c, s = math.cos(angle), math.sin(angle)
-    x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    x, y = arm(angle, law)
     g, row = law.friction * law.sense, WIDTH * law.point
     px, py = law.around[row + 3], law.around[row + 4]
     ar = -g * law.around[row + 5] - law.shaft * (r + law.lag)
@@ -35,8 +35,7 @@ def first_slip(bx: float, by: float, angle: float, law: Law) -> tuple[float, flo
 
     Along and across the arm it is B_∥/(c + g·q) and B_⊥/(c + g·q·(1 + |η|²)).
     """
-    c, s = math.cos(angle), math.sin(angle)
-    x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    x, y = arm(angle, law)
     size = math.sqrt(x * x + y * y)
     if size > 0.0:
         x, y = x / size, y / size

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from reference_model.core.forces.law import CENTRE, WIDTH, Law
+from reference_model.core.forces.law import CENTRE, WIDTH, Law, arm
 from reference_model.numerics.parts import inlined, part
 from reference_model.systems import FloatArray
 
@@ -94,16 +94,14 @@ def centre_slip(vx: float, vy: float, r: float, angle: float, law: Law) -> tuple
     """Return the slip of the centre."""
     if law.point == CENTRE:
         return vx, vy
-    c, s = math.cos(angle), math.sin(angle)
-    x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    x, y = arm(angle, law)
     return vx + r * y, vy - r * x
 
 
 @part
 def of_point(ax: float, ay: float, ar: float, r: float, angle: float, law: Law) -> tuple[float, float]:
     """Return the rate of the slip of the point that ``law`` follows, from the rates of the centre and of r."""
-    c, s = math.cos(angle), math.sin(angle)
-    x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    x, y = arm(angle, law)
     turn = r * (law.omega + r / law.gyration)
     return ax - y * ar - turn * x, ay + x * ar - turn * y
 
@@ -113,8 +111,7 @@ def slip_of(ux: float, uy: float, r: float, angle: float, law: Law) -> tuple[flo
     """Return the slip of the point that ``law`` follows, for the slip of the centre."""
     if law.point == CENTRE:
         return ux, uy
-    c, s = math.cos(angle), math.sin(angle)
-    x, y = c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
+    x, y = arm(angle, law)
     return ux - r * y, uy + r * x
 
 

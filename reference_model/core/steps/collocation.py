@@ -11,10 +11,10 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
-from reference_model.core.forces.law import CENTRE, Law
+from reference_model.core.forces.law import CENTRE, Law, arm
 from reference_model.core.forces.points import centre_slip, turning_of_friction
 from reference_model.core.forces.rates import friction, growth, secant, tangent
-from reference_model.numerics.parts import inlined, part
+from reference_model.numerics.parts import part
 from reference_model.systems import FloatArray
 
 NODES = 8
@@ -108,13 +108,6 @@ def friction_derivatives(vx: float, vy: float, r: float, angle: float, law: Law)
     return result
 
 
-@inlined
-def arm(angle: float, law: Law) -> tuple[float, float]:
-    """Return the arm of the point that ``law`` follows, relative to the centre."""
-    c, s = math.cos(angle), math.sin(angle)
-    return c * law.arm_x - s * law.arm_y, s * law.arm_x + c * law.arm_y
-
-
 @part
 def jacobian_at(values: FloatArray, law: Law) -> FloatArray:
     """Return the derivatives of the growth of slip and of r at a node by all unknowns, shape (3, 6)."""
@@ -182,18 +175,20 @@ def newton_matrix(values: FloatArray, h: float, n: int, law: Law) -> FloatArray:
     The change of a point's arm with the angle, of the order of h³, is neglected.
     """
     by_slip, rows = np.empty((NODES, NODES * n * n)), np.zeros((NODES, NODES * n * n))
+    arms = np.empty((NODES, 2))
+    for k in range(NODES):
+        arms[k, 0], arms[k, 1] = arm(values[k, 5], law)
     for j in range(NODES):
         J = jacobian_at(values[j], law)
         for k in range(NODES):
             weight, turn = h * INTEGRAL[j, k], law.omega * h * (SHARES[j] - SHARES[k])
             c, s = weight * math.cos(turn), weight * math.sin(turn)
-            ex, ey = arm(values[k, 5], law)
             for v in range(n):
                 row = (n * k + v) * n
                 x, y = c * J[v, 0] + s * J[v, 1], c * J[v, 1] - s * J[v, 0]
                 by_slip[j, row], by_slip[j, row + 1] = x, y
                 if n > 2:
-                    by_slip[j, row + 2] = x * ey - y * ex + weight / law.gyration * J[v, 5]
+                    by_slip[j, row + 2] = x * arms[k, 1] - y * arms[k, 0] + weight / law.gyration * J[v, 5]
                 if j == k:
                     for w in range(n):
                         by_slip[j, row + w] += J[v, 2 + w]
