@@ -360,7 +360,7 @@ class ModeChoice:
                 changed.append(i)
         if self._resting.rows:
             margins = np.minimum(margins, np.maximum(self._checked_left(t), -1.0))  # finite without friction
-        # A jump to minus the same size has no root that interpolation could mistake for it.
+        # The margin keeps its size, so interpolation halves the interval that contains the jump.
         margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
         return margins
 
