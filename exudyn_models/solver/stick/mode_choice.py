@@ -86,12 +86,16 @@ class ModeChoice:
 
     def begin(self, t: float) -> None:
         """Let velocities satisfy all joints, by an impact without friction."""
-        initial = exu.ConfigurationType.Initial
-        self._load()
+        self._data.SetAECoordinates(self._data.GetAECoordinates(exu.ConfigurationType.Initial))
         self._dynamics.evaluate(t)
         change = self._dynamics.violation()
         if change.any():
-            self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t(initial) + change, initial)
+            self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t() + change)
+
+    @property
+    def solver(self) -> Any:
+        """Initialised solver that evaluates the model."""
+        return self._dynamics.solver
 
     @property
     def groups(self) -> list[list[StickingContact]]:
@@ -104,7 +108,7 @@ class ModeChoice:
         Friction keeps this excess of speed in the direction of the slip, so subtract it in this direction.
         """
         for contact, first in list(self._first_slips.items()):
-            motion = contact.motion(self._mbs, exu.ConfigurationType.Initial)
+            motion = contact.motion(self._mbs)
             if contact.free_to_slide and motion.potential < GROWN * first:
                 continue
             del self._first_slips[contact]
@@ -112,7 +116,6 @@ class ModeChoice:
                 self._dynamics.evaluate(t)
                 slips = Slips(self._mbs, self._dynamics, [contact])
                 slips.give(dict(enumerate((1.0 - first / motion.potential) * slips.now)), [])
-        self._slides.starts = bool(self._first_slips)
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
@@ -127,7 +130,6 @@ class ModeChoice:
 
         Until ``end``, contacts that have begun to slip have sliding friction, even if others change their modes.
         """
-        self._load()
         for spring in self._springs:
             spring.choose(self._mbs, AHEAD * self._step)
         for contact in self._contacts:
@@ -170,25 +172,17 @@ class ModeChoice:
             self._dynamics.evaluate(t)
             Slips(self._mbs, self._dynamics, sliding)
 
-    def _load(self) -> None:
-        self._data.SetSystemState(self._data.GetSystemState(exu.ConfigurationType.Initial), CURRENT)
-
     def _present(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return generalised forces, accelerations and constraint forces of the present modes."""
         forces = self._dynamics.forces()
         return forces, *self._dynamics.solution(forces)
 
-    def _iterate(
-        self,
-        t: float,
-        solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
-        configurations: Sequence[Any] = (CURRENT, exu.ConfigurationType.Initial),
-    ) -> None:
+    def _iterate(self, t: float, solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]) -> None:
         """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
         for _ in range(ITERATIONS):
             forces, accelerations, constraints = solve()
             before = np.concatenate((forces, self._holding))
-            self._dynamics.store(accelerations, constraints, configurations)
+            self._dynamics.store(accelerations, constraints)
             for i in self._varying:
                 self._holding[i] = self._contacts[i].strength(t)[0]
             now = np.concatenate((self._dynamics.forces(), self._holding))
@@ -371,7 +365,7 @@ class ModeChoice:
         if least < NEAR:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
             self._dynamics.evaluate(t)
-            self._iterate(t, self._present, (CURRENT,))
+            self._iterate(t, self._present)
             left = self._left(t)
             if least < -1.0 and left.min() > 0.0:
                 raise SimulationError(

@@ -27,15 +27,14 @@ TURN = 0.02
 class SlidingSteps:
     """Choice of the next step, at most ``step`` (s), while contacts slide in the plane.
 
-    A contact ``rests`` at the end of the last step, or ``starts`` to slide. The run ``pauses`` then, or if the next
-    step must have another size.
+    A contact ``rests`` at the end of the last step.
     """
 
     def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:
         self._mbs, self._contacts, self._step = mbs, contacts, step
         self._by_slip = self._growing = math.inf
         self._directions: dict[PlanarContact, FloatArray] = {}
-        self.starts = self.pauses = self.rests = False
+        self.rests = False
 
     @property
     def longest(self) -> float:
@@ -69,7 +68,6 @@ class SlidingSteps:
             self._growing = step / 2.0
             return False
         self._growing = 2.0 * max(step, self._growing) if self._growing < self._step else math.inf
-        self.pauses = self.starts or self.rests or self.longest < self._step
         return True
 
     def survey(self) -> None:

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Sets, independent_rows
 from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
 from exudyn_models.solver.stick.sticking_contacts import STILL, PlanarContact, StickingContact
@@ -101,5 +99,4 @@ class Slips:
         change = np.array([wanted[row] for row in changed]) - self.now[changed]
         impulses = np.linalg.solve(self.to_rates[np.ix_(changed, changed)], change)
         velocities = self._velocities + self._to_velocities[:, changed] @ impulses
-        for configuration in (CURRENT, exu.ConfigurationType.Initial):
-            self._data.SetODE2Coordinates_t(velocities, configuration)
+        self._data.SetODE2Coordinates_t(velocities)
