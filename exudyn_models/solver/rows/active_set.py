@@ -48,25 +48,23 @@ class LoadedRows:
 
         ``limits``, shape (k, 2), are the present limits of the forces against slip forward and backward.
         """
-        states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
-        meshes = any(law is not None for law in self.laws)
-        matrix = to_rates + np.diag(REGULAR * np.where(np.diag(to_rates) > 0.0, np.diag(to_rates), 1.0))
+        states, power, sizes = self.pinned.copy(), self.loads, np.diag(to_rates)
+        meshes, pinned = any(law is not None for law in self.laws), self.pinned != 0
+        matrix = to_rates + np.diag(REGULAR * np.where(sizes > 0.0, sizes, 1.0))
+        random = np.random.default_rng(0) if meshes else None
         for tried in range(MOST):
-            if meshes and tried and tried % TOGETHER == 0:
-                states = np.where(self.pinned != 0, self.pinned, random.integers(-1, 2, len(states)))
+            if random is not None and tried and tried % TOGETHER == 0:
+                states = np.where(pinned, self.pinned, random.integers(-1, 2, len(states)))
                 states[np.isinf(limits[:, 1]) & (states < 0)] = 0
             forces, power = self._at(states, power, matrix, rates, limits)
             left = rates + to_rates @ forces
-            now = self._limits(power, limits)
-            weight = np.maximum(np.abs(rates), np.diag(to_rates) * np.abs(forces))
-            wanted = np.where(
-                states == 0,
-                np.where(forces < -now[:, 0] - CLOSE * np.abs(forces), 1, 0)
-                - np.where(forces > now[:, 1] + CLOSE * np.abs(forces), 1, 0),
-                np.where(states * left < -CLOSE * weight, 0, states),
-            )
-            wanted = np.where(self.pinned != 0, self.pinned, wanted)
-            wrong = np.flatnonzero(wanted != states)
+            now = self._limits(power, limits) if meshes else limits
+            magnitudes = np.abs(forces)
+            above = CLOSE * magnitudes
+            turns = states * left < -CLOSE * np.maximum(np.abs(rates), sizes * magnitudes)
+            begins = (forces < -now[:, 0] - above) * 1 - (forces > now[:, 1] + above)
+            wanted = np.where(states == 0, begins, np.where(turns, 0, states))
+            wrong = np.flatnonzero((wanted != states) & ~pinned)
             if not len(wrong):
                 return forces, left
             changed = wrong if meshes or tried < TOGETHER else wrong[:1]
@@ -89,14 +87,16 @@ class LoadedRows:
         limits: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Return the forces in these states, and the moments of the meshes; these begin with ``power``."""
-        size, slides = len(states), states != 0
-        loads = power
+        slides, loads = np.flatnonzero(states), power
+        at_limits = np.where(states > 0, -limits[:, 0], limits[:, 1])[slides]
         for _ in range(4 * len(loads) + 4):
             system, right = matrix.copy(), -rates
-            system[slides] = np.eye(size)[slides]
-            right[slides] = np.where(states > 0, -limits[:, 0], limits[:, 1])[slides]
-            for i, law in enumerate(self.laws):
-                if law is None or not slides[i]:
+            system[slides] = 0.0
+            system[slides, slides] = 1.0
+            right[slides] = at_limits
+            for i in slides.tolist():
+                law = self.laws[i]
+                if law is None:
                     continue
                 load, way = loads[law.place], int(states[i])
                 at = (1, -1).index(way)
@@ -105,6 +105,8 @@ class LoadedRows:
                 system[i] += slope * self.by_force[law.place]
                 right[i] = -scale * way * law.limit(0.0, way) - slope * self.loads[law.place]
             forces = np.linalg.solve(system, right)
+            if not len(loads):
+                break
             found = self.loads + self.by_force @ forces
             same = np.abs(found - loads).max(initial=0.0) <= CLOSE * np.abs(found).max(initial=0.0)
             loads = found

@@ -59,12 +59,14 @@ class Dynamics:
         data.SetTime(t)
         solver.ComputeMassMatrix(self._mbs)
         self.mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
-        if self._count:
+        if len(without) < self._count:
             solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
             solver.ComputeJacobianAE(self._mbs, 1.0, 1.0, 1.0)
             self.gradients = np.array(solver.GetSystemJacobian())[-self._count :, :size]
             self.gradients[list(without)] = 0.0
             self.rates = self._prescribed_rates(t) if self.gradients.any() else np.zeros(self._count)
+        else:
+            self.gradients, self.rates = np.zeros((self._count, size)), np.zeros(self._count)
         key = self.mass.tobytes(), self.gradients.tobytes()
         if key not in self._inverses:
             if len(self._inverses) == KEPT:

@@ -84,7 +84,8 @@ class _Run:
         outputs = settings.solution
         wanted = [kind for kind in (_Rows, _FileRows) if kind.chosen(outputs)]
         self._rows = [kind(outputs, self._start, self._step) for kind in wanted]
-        self._reached, self._stopped = self._start, False
+        self._reached = self._target = self._start
+        self._size, self._stopped, self._ends = 0.0, False, False
         self._announced, self._settled = -math.inf, list[float]()
         self._ended_at_once = -math.inf
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
@@ -125,7 +126,7 @@ class _Run:
         def prepare(mbs: Any, t: float) -> bool:
             for contact in self._planar:
                 contact.start_step(mbs)
-            if t <= self._announced:  # a shorter step replaces a step that passed a change
+            if t <= self._announced + ON_GRID * self._step:  # this step replaces one that passed a change
                 return True
             self._announced = t
             return own(mbs, t)
@@ -139,8 +140,10 @@ class _Run:
             begins = self._solver is None
             if begins:
                 self._solver = mbs.sys["dynamicSolver"]
+            elif self._target - t > ON_GRID * self._size:
+                self._size = 0.0  # Newton's method failed, and Exudyn chose a shorter step
             try:
-                self._aim(next(steps) if begins else steps.send(t))
+                self._aim(steps.send(None if begins else t))
             except StopIteration:
                 self._stopped = True
             for rows in self._rows:  # Exudyn writes them after this function
@@ -151,12 +154,18 @@ class _Run:
 
     def _aim(self, t: float) -> None:
         """Let the next step end at the time t (s)."""
-        it, step = self._solver.it, t - self._reached
-        if abs(step - it.currentStepSize) > ON_GRID * step:
+        if t <= self._reached:
+            raise SimulationError(
+                f"steps that resolve how contacts slide fell to zero at t = {self._reached:.9g} s: use smaller "
+                "steps, or give the contacts a regularisation"
+            )
+        self._target, step = t, t - self._reached
+        if abs(step - self._size) > LOCATED * step:
+            it, self._size = self._solver.it, step
+            it.currentStepSize = it.maxStepSize = step
             self._renew_jacobian()
-        it.currentTime, it.currentStepSize, it.maxStepSize = self._reached, step, step
-        if not self._options.adaptiveStep:  # Exudyn counts steps of one size then
-            it.adaptiveStep, it.minStepSize = True, step
+            if not self._options.adaptiveStep:  # Exudyn counts steps of one size then
+                it.adaptiveStep, it.minStepSize = True, step
         if self._planar:
             small = any(one.free_to_slide for one in self._planar) and self._slides.longest < self._step
             self._solver.newton.relativeTolerance = self._tolerances[not small]
@@ -169,7 +178,7 @@ class _Run:
         self._modes.begin(self._reached)
         self._settle(before)
         self._keep(self._reached)
-        while self._reached < self._end - ON_GRID * self._step and not self._stopped:
+        while not self._ends:
             passed = yield from self._go_on()
             if passed is None and not self._slides.rests:
                 continue
@@ -190,44 +199,36 @@ class _Run:
         """Accept a step to the time t (s)."""
         self._reached = t
         self._stopped = not self._own(self._mbs, t)
+        self._ends = self._stopped or t >= self._end - ON_GRID * self._step
         for rows in self._rows:
-            rows.note(t, self._stopped or t >= self._end - ON_GRID * self._step)
+            rows.note(t, self._ends)
 
     def _go_on(self) -> _Steps:
         """Step to the end of the run, or until contacts in the plane rest; return None.
 
         If a step passes a change, take it back, and return its end and the margins at both of its ends.
         """
-        margins, longest = self._modes.margins(self._reached), math.inf
-        while self._reached < self._end - ON_GRID * self._step and not self._stopped:
+        longest = math.inf
+        while not self._ends:
             start = self._reached
             self._modes.take_back(start)
             done = math.floor((start - self._start) / self._step + ON_GRID) + 1
             end = self._end if done >= self._steps else self._start + done * self._step
-            end = min(end, start + min(longest, self._slides.longest))
-            t = yield from self._step_to(end)
+            end = min(end, start + longest, start + self._slides.longest)
+            t = yield end
             longest = 2.0 * (t - start if end - t > ON_GRID * self._step else longest)
-            now = self._modes.margins(t)
-            if now.min() < 0.0:
-                self._take_back()
-                return t, (margins, now)
+            if not self._modes.hold():
+                now = self._modes.margins(t)
+                if now.min() < 0.0:
+                    self._take_back()
+                    return t, (self._modes.margins(start), now)
             if not self._slides.resolves(t - start):
                 self._take_back()
                 continue
-            margins = now
             self._keep(t)
             if self._slides.rests:
                 break
         return None
-
-    def _step_to(self, t: float) -> _Steps:
-        """Step to the time t (s), or to an earlier time if Newton's method fails; return this time."""
-        if t <= self._reached:
-            raise SimulationError(
-                f"steps that resolve how contacts slide fell to zero at t = {self._reached:.9g} s: use smaller "
-                "steps, or give the contacts a regularisation"
-            )
-        return (yield t)
 
     def _take_back(self) -> None:
         data = self._data
@@ -236,6 +237,7 @@ class _Run:
         if data.ODE1Size():
             data.SetODE1Coordinates_t(data.GetODE1Coordinates_t(START))
         data.SetTime(self._reached)
+        self._solver.it.currentTime, self._size = self._reached, 0.0
 
     def _land(self, high: float, margins: Sequence[FloatArray]) -> _Steps:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
@@ -253,7 +255,7 @@ class _Run:
         for tried in range(MOST_CHANGES):
             ended = below < 0.0
             within = [(low, np.maximum(above, 0.0)), (high, below)]
-            trials = [_roots(pair, ended) for pair in (points[-3:], points[-2:], within)]
+            trials = (_roots(some, ended) for some in (points[-3:], points[-2:], within))
             roots = next((root for root in trials if low < root.min() < high), np.where(ended, low, np.inf))
             found = float(roots.min())
             is_small = (np.abs(points[-1][1]) <= SMALL * large)[roots.argmin()]
@@ -262,7 +264,7 @@ class _Run:
             if tried:
                 self._take_back()
             if high - low <= least:  # a margin jumps here
-                t = yield from self._step_to(high)
+                t = yield high + 2.0 * np.spacing(abs(high))  # not before it by rounding
                 now = self._modes.margins(t)
                 break
             bisects = tried % 4 == 3 or (turns_back and low == start)
@@ -270,7 +272,7 @@ class _Run:
             at_once = tried == 0 and aim - low <= least
             if at_once:
                 break
-            t = yield from self._step_to(min(max(aim, low) + least / 2.0, high - least / 2.0))
+            t = yield min(max(aim, low) + least / 2.0, high - least / 2.0)
             now = self._modes.margins(t)
             points.append((t, now))
             if (now < 0.0).any():
@@ -304,7 +306,7 @@ class _Run:
             contact.planar.frozen = True
         try:
             while self._reached < end:
-                self._keep((yield from self._step_to(end)))
+                self._keep((yield end))
         finally:
             for contact, _ in stopping:
                 contact.planar.frozen = False
