@@ -146,10 +146,10 @@ class _Look:
         self._reached = t
         if t >= self._steps.next_time:
             self._steps.warn(t, self._positions())
-        total = sum(self._positions(CURRENT, False).tolist()) + sum(self._velocities(CURRENT, False).tolist())
-        self._finite = math.isfinite(
-            total + (sum(self._others(CURRENT, False).tolist()) if self._works else 0.0)
-        )
+        total = sum(self._velocities(CURRENT, False).tolist())  # positions are their integrals
+        if self._works:
+            total += sum(self._others(CURRENT, False).tolist())
+        self._finite = math.isfinite(total)
         if self._jumps is not None:
             self._jumps.look(t, self._rates())
         if self._count is not None:

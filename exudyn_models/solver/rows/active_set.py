@@ -48,9 +48,10 @@ class LoadedRows:
 
         ``limits``, shape (k, 2), are the present limits of the forces against slip forward and backward.
         """
-        states, power, sizes = self.pinned.copy(), self.loads, np.diag(to_rates)
+        states, power, diagonal = self.pinned.copy(), self.loads, np.diag(to_rates)
         meshes, pinned = any(law is not None for law in self.laws), self.pinned != 0
-        matrix = to_rates + np.diag(REGULAR * np.where(sizes > 0.0, sizes, 1.0))
+        matrix = to_rates.copy()
+        matrix.flat[:: len(matrix) + 1] += REGULAR * np.where(diagonal > 0.0, diagonal, 1.0)
         random = np.random.default_rng(0) if meshes else None
         for tried in range(MOST):
             if random is not None and tried and tried % TOGETHER == 0:
@@ -58,13 +59,15 @@ class LoadedRows:
                 states[np.isinf(limits[:, 1]) & (states < 0)] = 0
             forces, power = self._at(states, power, matrix, rates, limits)
             left = rates + to_rates @ forces
-            now = self._limits(power, limits) if meshes else limits
-            magnitudes = np.abs(forces)
-            above = CLOSE * magnitudes
-            turns = states * left < -CLOSE * np.maximum(np.abs(rates), sizes * magnitudes)
-            begins = (forces < -now[:, 0] - above) * 1 - (forces > now[:, 1] + above)
-            wanted = np.where(states == 0, begins, np.where(turns, 0, states))
-            wrong = np.flatnonzero((wanted != states) & ~pinned)
+            forward, backward = (self._limits(power, limits) if meshes else limits).T
+            sizes = np.abs(forces)
+            above = CLOSE * sizes
+            wanted = np.subtract(forces < -forward - above, forces > backward + above, dtype=int)
+            if states.any():
+                turns = states * left < -CLOSE * np.maximum(np.abs(rates), diagonal * sizes)
+                wanted = np.where(states == 0, wanted, np.where(turns, 0, states))
+                wanted[pinned] = self.pinned[pinned]
+            wrong = np.flatnonzero(wanted != states)
             if not len(wrong):
                 return forces, left
             changed = wrong if meshes or tried < TOGETHER else wrong[:1]
@@ -87,23 +90,19 @@ class LoadedRows:
         limits: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Return the forces in these states, and the moments of the meshes; these begin with ``power``."""
-        slides, loads = np.flatnonzero(states), power
-        at_limits = np.where(states > 0, -limits[:, 0], limits[:, 1])[slides]
+        slides, loads = np.flatnonzero(states).tolist(), power
         for _ in range(4 * len(loads) + 4):
             system, right = matrix.copy(), -rates
-            system[slides] = 0.0
-            system[slides, slides] = 1.0
-            right[slides] = at_limits
-            for i in slides.tolist():
-                law = self.laws[i]
-                if law is None:
-                    continue
-                load, way = loads[law.place], int(states[i])
+            for i in slides:
+                law, way = self.laws[i], int(states[i])
                 at = (1, -1).index(way)
-                scale = limits[i, at] / self.sliding[i, at]
-                slope = scale * law.slope_at(load, way)
-                system[i] += slope * self.by_force[law.place]
-                right[i] = -scale * way * law.limit(0.0, way) - slope * self.loads[law.place]
+                system[i] = 0.0
+                system[i, i], right[i] = 1.0, -way * limits[i, at]
+                if law is not None:
+                    scale = limits[i, at] / self.sliding[i, at]
+                    slope = scale * law.slope_at(loads[law.place], way)
+                    system[i] += slope * self.by_force[law.place]
+                    right[i] = -scale * way * law.limit(0.0, way) - slope * self.loads[law.place]
             forces = np.linalg.solve(system, right)
             if not len(loads):
                 break

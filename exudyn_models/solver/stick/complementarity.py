@@ -53,6 +53,8 @@ class Sets:
 
     def only(self, chosen: Sequence[int], loaded: LoadedRows | None) -> "Sets":
         """Return the sets of chosen contacts, whose rows follow each other and may be ``loaded``."""
+        if self.on_axes:
+            return Sets(self.blocks[: len(chosen)], self.laws[: len(chosen)], loaded)
         ends = accumulate((self.blocks[i].stop - self.blocks[i].start for i in chosen), initial=0)
         return Sets([slice(*pair) for pair in pairwise(ends)], [self.laws[i] for i in chosen], loaded)
 
@@ -64,6 +66,8 @@ class Sets:
     @property
     def owner(self) -> NDArray[Any]:
         """Number of the contact of each row, shape (k,)."""
+        if self.on_axes:
+            return np.arange(len(self.blocks))
         return np.repeat(np.arange(len(self.blocks)), [rows.stop - rows.start for rows in self.blocks])
 
     def sizes(self, slips: FloatArray) -> FloatArray:

@@ -72,7 +72,7 @@ class ModeChoice:
         locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
         self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
-        self._slipped = set[StickingContact]()
+        self._slipped, self._held = set[StickingContact](), set[int]()
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
         self._dynamics.evaluate(t, self._places)
@@ -132,32 +132,34 @@ class ModeChoice:
         for spring in self._springs:
             spring.choose(self._mbs, AHEAD * self._step)
         for contact in self._contacts:
-            contact.enter(self._mbs, contact.mode)
+            if contact.stick.entered is not contact.stick.mode:
+                contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
             contact.motion(self._mbs)
         slips = self._slips_at(t)
-        slips.allow()
+        if self._planar:
+            slips.allow()
         for i in self._varying:
             self._holding[i], self._limits[i] = self._contacts[i].strength(t)
         bounds = slips.bounds(self._dynamics.solution(self._dynamics.forces())[0], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
-        still[self._one_way] |= slips.now[[slips.firsts[i] for i in self._one_way]] < 0.0
+        for i in self._one_way:
+            still[i] |= slips.now[slips.firsts[i]] < 0.0
         modes = [
             Mode.LOCKED if at_rest or contact in self._ended else contact.sliding_mode(slips.now[rows])
             for contact, at_rest, rows in zip(self._contacts, still.tolist(), slips.sets.blocks, strict=True)
         ]
         self._iterate(t, lambda: self._choose(t, slips, modes, bounds))
-        held = set(self._resting.rows)
-        for contact, mode, rows in zip(self._contacts, modes, slips.sets.blocks, strict=True):
-            if mode == Mode.LOCKED and contact.stick.slides:
-                self._slipped.add(contact)
-            locked = contact.mode == Mode.LOCKED
-            contact.lock(
-                self._mbs,
-                [row - rows.start for row in range(rows.start, rows.stop) if locked and row in held],
-            )
+        self._slipped.update(
+            contact
+            for contact, mode in zip(self._contacts, modes, strict=True)
+            if mode is Mode.LOCKED and contact.stick.mode is not mode and contact.stick.slides
+        )
+        self._lock(slips)
         self._rows = slips.rows[slips.firsts]
-        self._directions = np.array([one.mode if one.stick.slides else 0.0 for one in self._contacts], float)
+        self._directions = np.array(
+            [int(one.mode) if one.stick.slides else 0 for one in self._contacts], float
+        )
         self._offsets = 1.0 - np.abs(self._directions)
         simple = not (self._varying or self._springs or self._resting.groups)
         self._line = (
@@ -166,6 +168,14 @@ class ModeChoice:
         self.survey(t)
         self._slides.survey()
         self.end(())
+
+    def _lock(self, slips: Slips) -> None:
+        """Let constraints hold the rows of contacts at rest."""
+        before, self._held = self._held, set(self._resting.rows)
+        owner = slips.sets.owner
+        for i in {int(owner[row]) for row in before ^ self._held}:
+            own = enumerate(slips.rows_of([i]))
+            self._contacts[i].lock(self._mbs, [k for k, row in own if row in self._held])
 
     def survey(self, t: float) -> None:
         """Find the slips that joints and locks allow at sliding contacts in the plane."""
@@ -190,12 +200,13 @@ class ModeChoice:
         """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
         for _ in range(ITERATIONS):
             forces, accelerations, constraints = solve()
-            before = np.concatenate((forces, self._holding))
+            before = self._holding.copy()
             self._dynamics.store(accelerations, constraints)
             for i in self._varying:
                 self._holding[i] = self._contacts[i].strength(t)[0]
-            now = np.concatenate((self._dynamics.forces(), self._holding))
-            if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
+            now = self._dynamics.forces()
+            changes = np.abs(now - forces).max(initial=0.0), np.abs(self._holding - before).max(initial=0.0)
+            if max(changes) <= SETTLED * max(np.abs(now).max(initial=0.0), self._holding.max(initial=0.0)):
                 return
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s: loads that depend "
@@ -208,8 +219,10 @@ class ModeChoice:
         """Enter the modes under the present loads; return these, accelerations and constraint forces."""
         contacts, blocks = self._contacts, slips.sets.blocks
         for contact, mode, holding in zip(contacts, modes, self._holding.tolist(), strict=True):
-            contact.enter(self._mbs, Mode.OPEN if holding == 0.0 else mode)
-        still = [i for i, contact in enumerate(contacts) if contact.mode == Mode.LOCKED]
+            mode = Mode.OPEN if holding == 0.0 else mode
+            if contact.stick.mode is not mode:
+                contact.enter(self._mbs, mode)
+        still = [i for i, contact in enumerate(contacts) if contact.stick.mode is Mode.LOCKED]
         self._loads.act(False)
         accelerations, constraints = self._dynamics.solution(self._dynamics.forces())
         self._loads.act(True)
@@ -248,6 +261,8 @@ class ModeChoice:
 
     def _to_loads(self, slips: Slips) -> FloatArray:
         """Return the moments that let limits grow, by unit forces along all locks, shape (m, k)."""
+        if not self._growing:
+            return np.zeros((0, len(slips.rows)))
         return self._loads.by_forces(slips.to_loads, slips.firsts)
 
     def _find_effects_of_meshes(self, slips: Slips) -> None:
