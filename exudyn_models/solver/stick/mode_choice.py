@@ -73,8 +73,8 @@ class ModeChoice:
         self._growing = [i for i, one in enumerate(contacts) if isinstance(one.stick, GrowingLimit)]
         self._loads = Loads(mbs, [one.stick for one in contacts])
         self._meshes = self._loads.meshes
-        locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
-        self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
+        places = [contact.force_places(self._data) for contact in contacts]
+        self._places = np.hstack([np.empty((2, 0), dtype=int), *places])
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}

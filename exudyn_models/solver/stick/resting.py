@@ -117,8 +117,9 @@ class Resting:
     ) -> None:
         """Choose the rows of ``resting`` contacts that become constraints, and find contacts that share loads.
 
-        ``places`` locate the forces of all constraints, and rows ``before`` are preferred. Forces along all
-        rows change the moments of meshes by ``to_loads``, shape (m, k).
+        ``places``, shape (2, k), locate the forces of constraints of rows, and of constraints that hold all rows of a
+        contact; rows ``before`` are preferred. Forces along all rows change the moments of meshes by ``to_loads``,
+        shape (m, k).
         """
         own_rows = [range(len(slips.rows))[slips.sets.blocks[i]] for i in resting]
         rows = [row for own in own_rows for row in own]
@@ -128,7 +129,8 @@ class Resting:
         )
         others = [i for i in range(len(rows)) if i not in chosen]
         self.rows, self.groups, self.alone = [rows[i] for i in chosen], [], []
-        self.places = places[self.rows]
+        complete = [len(set(own).difference(self.rows)) == 0 for own in own_rows]
+        self.places = places[np.array(complete, dtype=int)[owner[chosen]], self.rows]
         links = np.zeros((len(resting), len(resting)))
         for i, shares in zip(others, by_chosen, strict=True):
             links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares)]]] = 1.0
@@ -161,7 +163,7 @@ class Resting:
                 contact.stick.holds = partial(self.groups[-1].forces_of, i)
                 if isinstance(contact.stick, MeshLaw):
                     contact.stick.shifts = partial(self.groups[-1].load_of, contact.stick)
-        self.alone_places = places[[slips.sets.blocks[i].start for i in self.alone]]
+        self.alone_places = places[0, [slips.sets.blocks[i].start for i in self.alone]]
         for i, place in zip(self.alone, self.alone_places, strict=True):
             stick = contacts[i].stick
             stick.holds = partial(self._force_at, int(place))
