@@ -59,6 +59,36 @@ def slip_on_any(parameters: Parameters, q: Any, q_t: Any) -> tuple[float, float,
 
 
 @compiled
+def locked_slips(
+    parameters: Parameters, rim: float, mbs: Any, t: Any, item: Any, q: Any, q_t: Any, level: Any
+) -> tuple[float, float, float]:
+    """Return the slip (m/s), with ``rim`` (m) times the spin, for a constraint at velocity level."""
+    coordinates, velocities = motion_of(parameters, q, q_t)
+    ux, uy, spin = slip_of_nodes(slip_and_place(contact_of(parameters)[1], coordinates)[0], velocities)
+    return ux, uy, rim * spin
+
+
+@compiled
+def locked_slips_of_pin(
+    parameters: Parameters, rim: float, mbs: Any, t: Any, item: Any, q: Any, q_t: Any, level: Any
+) -> tuple[float, float]:
+    """Return the slip (m/s) for a constraint at velocity level."""
+    return locked_slips(parameters, rim, mbs, t, item, q, q_t, level)[:2]
+
+
+@compiled
+def gradients_of_locked_slips(
+    parameters: Parameters, rim: float, mbs: Any, t: Any, item: Any, q: Any, q_t: Any, level: Any
+) -> FloatArray:
+    """Return the derivatives of ``locked_slips``, shape (3, n), or of ``locked_slips_of_pin`` if ``rim`` is zero."""
+    coordinates, _ = motion_of(parameters, q, q_t)
+    to_slip = slip_and_place(contact_of(parameters)[1], coordinates)[0]
+    for k in range(len(coordinates)):
+        to_slip[2, k] *= rim
+    return to_slip[: 3 if rim > 0.0 else 2]
+
+
+@compiled
 def force_on_any(parameters: Parameters, factor: float, mbs: Any, t: Any, item: Any, q: Any, q_t: Any) -> Any:
     """Return the generalised forces on both nodes, in the memory of ``q_t``, times ``factor``.
 

@@ -8,9 +8,19 @@ from collections.abc import Callable
 from functools import cache, partial
 from typing import Any, cast
 
-from exudyn_models.forces.any_pair import force_on_any, jacobian_on_any, parameters_of, slip_on_any
+import numpy as np
+
+from exudyn_models.forces.any_pair import (
+    force_on_any,
+    gradients_of_locked_slips,
+    jacobian_on_any,
+    locked_slips,
+    locked_slips_of_pin,
+    parameters_of,
+    slip_on_any,
+)
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
-from exudyn_models.forces.jit import FLOATS, TABLE, entry_point
+from exudyn_models.forces.jit import FLOATS, LONGEST, TABLE, entry_point
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import IN_THE_PLANE, force_in_the_plane, jacobian_in_the_plane
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
@@ -51,6 +61,16 @@ def force_and_jacobian(
         return cast(FloatArray, derive()(parameters, friction, *slopes, mbs, t, item, q, q_t, *weights))
 
     return varying if factors.contact is None else partial(force, parameters, 1.0), jacobian
+
+
+def constraint_and_gradients(kinds: Kinds, factors: LoadAndCoefficient, rim: float) -> tuple[Any, Any]:
+    """Return the user functions of a constraint that lets a contact stick; ``rim`` (m) is 0 for a pin."""
+    parameters = parameters_of(
+        factors.geometry, kinds, np.zeros(LONGEST)
+    )  # its coordinates need no reference
+    slips = locked_slips if rim > 0.0 else locked_slips_of_pin
+    gradients = entry_point(gradients_of_locked_slips, *FORCE, None)
+    return partial(entry_point(slips, *FORCE, None), parameters, rim), partial(gradients, parameters, rim)
 
 
 Motion = tuple[float, float, float, float]

@@ -32,7 +32,6 @@ joints hold the disc on the contact's axis.
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -275,17 +274,16 @@ def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialSti
     if len(nodes) == 1:
         nodes = [mbs.AddNode(items.NodePointGround()), *nodes]
     markers = [mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=node)) for node in nodes]
+    parts_and_locks = [(part, lock) for part in parts for lock in range(part.lock_count)]
     locks = (
         items.ObjectConnectorCoordinateVector(
             name=contact.lock_name(number),
             markerNumbers=markers,
-            scalingMarker0=np.zeros((1, 1)),  # one equation
             velocityLevel=True,
-            constraintUserFunction=partial(part.constraint, i),
-            jacobianUserFunction=partial(part.constraint_jacobian, i),
             activeConnector=False,
+            **part.lock_options(lock),
         )
-        for number, (part, i) in enumerate((part, i) for part in parts for i in range(part.most_locks))
+        for number, (part, lock) in enumerate(parts_and_locks)
     )
     return tuple(int(mbs.AddObject(lock)) for lock in locks)
 

@@ -197,10 +197,8 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
     remaining contacts in their order.
     """
     rest, lengths = gram, np.diag(gram)
-    inverse = _inverse(gram)
-    # This product is the part of each squared length that the others do not hold.
-    if inverse is not None and (lengths * np.diag(inverse) * CLEARLY < 1.0).all():
-        return list(range(len(gram))), inverse, np.zeros((0, len(gram)))
+    if (of_all := _clear_inverse(gram)) is not None:
+        return list(range(len(gram))), of_all, np.zeros((0, len(gram)))
     weights = np.zeros(len(gram))
     np.divide(1.0, lengths, out=weights, where=lengths > 0.0)
     weights[list(preferred)] *= PREFERRED
@@ -214,18 +212,21 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
         weights[i] = 0.0
     chosen.sort()
     others = [i for i in range(len(gram)) if i not in chosen]
-    inverse = np.linalg.inv(gram[np.ix_(chosen, chosen)])
-    by_chosen = (inverse @ gram[np.ix_(chosen, others)]).T
+    of_chosen = np.linalg.inv(gram[np.ix_(chosen, chosen)])
+    by_chosen = (of_chosen @ gram[np.ix_(chosen, others)]).T
     by_chosen[np.abs(by_chosen) < DEPENDENT] = 0.0
-    return chosen, inverse, np.asarray(by_chosen, float)
+    return chosen, np.asarray(of_chosen, float), np.asarray(by_chosen, float)
 
 
-def _inverse(gram: FloatArray) -> FloatArray | None:
-    """Return the inverse, or None if a slip is prescribed, or rounding errors are most of the inverse."""
-    if not (np.diag(gram) > 0.0).all():
+def _clear_inverse(gram: FloatArray) -> FloatArray | None:
+    """Return the inverse, or None if rows are not clearly independent."""
+    lengths = np.diag(gram)
+    if not (lengths > 0.0).all():
         return None
     try:
         inverse = np.linalg.inv(gram)
     except np.linalg.LinAlgError:
         return None
-    return inverse if (np.diag(inverse) > 0.0).all() else None
+    # The inverse of this product is the part of each squared length that the others do not hold.
+    shares = lengths * np.diag(inverse)
+    return np.asarray(inverse, float) if ((shares > 0.0) & (shares * CLEARLY < 1.0)).all() else None

@@ -69,13 +69,14 @@ class ModeChoice:
         self._ratios = np.array([one.stick.static_ratio for one in contacts])[:, None]
         self._loads = Loads(mbs, [one.stick for one in contacts])
         self._meshes = self._loads.meshes
-        locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
-        self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
+        places = [contact.force_places(self._data) for contact in contacts]
+        self._places = np.hstack([np.empty((2, 0), dtype=int), *places])
+        self._locks = np.unique(self._places)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped, self._held = set[StickingContact](), set[int]()
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
-        self._dynamics.evaluate(t, self._places)
+        self._dynamics.evaluate(t, self._locks)
         self._slips = Slips(mbs, self._dynamics, contacts)
         self._holding, self._limits = np.zeros(len(contacts)), np.zeros((len(contacts), 2))
         for i, contact in enumerate(contacts):
@@ -185,7 +186,7 @@ class ModeChoice:
 
     def _slips_at(self, t: float) -> Slips:
         """Return the slips at the present state and the time t (s), without locks."""
-        self._dynamics.evaluate(t, self._places)
+        self._dynamics.evaluate(t, self._locks)
         self._slips = self._slips.at_present(self._mbs)
         return self._slips
 

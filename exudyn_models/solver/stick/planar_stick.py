@@ -10,13 +10,14 @@ of the load, so the contact holds if any share lies within the limit surface of 
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.forces.slip_kinematics import slip_and_place_of_nodes
-from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.forces.user_functions import constraint_and_gradients, force_and_jacobian
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
     linear_friction,
@@ -68,6 +69,19 @@ class PlanarStick(AxialStick):
     def most_locks(self) -> int:
         """Largest number of constraints that hold the contact."""
         return 3 if self.mean_radius > 0.0 else 2
+
+    @property
+    def lock_count(self) -> int:
+        """Number of constraints: one for each direction, then one for all directions of a contact in the plane."""
+        return self.most_locks + (self.most_locks > 1)
+
+    def lock_options(self, lock: int) -> dict[str, Any]:
+        """Return the number of equations of a constraint, as Exudyn's scaling, and its user functions."""
+        count, functions = 1, (partial(self.constraint, lock), partial(self.constraint_jacobian, lock))
+        if lock == self.most_locks:
+            count, functions = lock, constraint_and_gradients(self.kinds, self.factors, self.mean_radius)
+        names = "constraintUserFunction", "jacobianUserFunction"
+        return {"scalingMarker0": np.zeros((count, 1)), **dict(zip(names, functions, strict=True))}
 
     @property
     def scales(self) -> FloatArray:

@@ -104,7 +104,7 @@ class PointSticks(AxialStick):
         super().use(locks)
         rest = iter(locks)
         for part in self.parts:
-            part.use(tuple(islice(rest, part.most_locks)))
+            part.use(tuple(islice(rest, part.lock_count)))
 
     def check(self, friction_coefficient: Coefficient, normal_load: NumberOrFunction) -> None:
         """Raise ``ValueError`` unless each point can evaluate coefficient and load alone."""

@@ -125,20 +125,23 @@ class Resting:
     ) -> None:
         """Choose the rows of ``resting`` contacts that become constraints, and find contacts that share loads.
 
-        ``places`` locate the forces of all constraints, and rows ``before`` are preferred. Forces along all
-        rows change the moments of meshes by ``to_loads``, shape (m, k).
+        ``places``, shape (2, k), locate the forces of constraints of rows, and of constraints that hold all rows of a
+        contact; rows ``before`` are preferred. Forces along all rows change the moments of meshes by ``to_loads``,
+        shape (m, k).
         """
         rows = slips.rows_of(resting)
         chosen, self.to_forces, by_chosen = independent_rows(
             slips.among(rows), [i for i, row in enumerate(rows) if row in before]
         )
         self.rows, self.groups, self.alone = [rows[i] for i in chosen], [], []
-        self.places = places[self.rows]
         if len(chosen) == len(rows) and slips.sets.on_axes:
-            self.alone = list(resting)
+            self.places, self.alone = places[0, self.rows], list(resting)
         else:
+            held = set(self.rows)
+            whole = set(slips.rows_of([i for i in resting if held.issuperset(slips.rows_of([i]))]))
+            self.places = places[[int(row in whole) for row in self.rows], self.rows]
             self._group(contacts, slips, resting, rows, chosen, by_chosen, to_loads)
-        self.alone_places = places[[slips.firsts[i] for i in self.alone]]
+        self.alone_places = places[0, [slips.firsts[i] for i in self.alone]]
         for i, place in zip(self.alone, self.alone_places.tolist(), strict=True):
             stick = contacts[i].stick
             stick.holds = partial(self._force_at, place)
@@ -160,7 +163,7 @@ class Resting:
         others = [i for i in range(len(rows)) if i not in chosen]
         links = np.zeros((len(resting), len(resting)))
         for i, shares in zip(others, by_chosen, strict=True):
-            links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares)]]] = 1.0
+            links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares).tolist()]]] = 1.0
         count, of_group = connected_components(links, directed=False)
         of_first, of_rest = of_group[owner[chosen]], of_group[owner[others]]
         for number in range(count):
@@ -169,7 +172,7 @@ class Resting:
             if not len(rest) and not isinstance(members[0], PlanarContact):
                 self.alone.append(resting[int(own[0])])
                 continue
-            order = [chosen[k] for k in first] + [others[k] for k in rest]
+            order = [chosen[k] for k in first.tolist()] + [others[k] for k in rest.tolist()]
             blocks = [np.array([order.index(i) for i in np.flatnonzero(owner == k).tolist()]) for k in own]
             self.groups.append(
                 Group(

@@ -94,6 +94,10 @@ class StickingContact:
             for lock, holds in zip(self.stick.locks, self.stick.held, strict=True):
                 mbs.SetObjectParameter(lock, "activeConnector", holds)
 
+    def force_places(self, data: Any) -> NDArray[Any]:
+        """Return the places of the forces along its locks among the constraint forces, twice, shape (2, k)."""
+        return np.array([[data.GetObjectLTGAE(lock)[0] for lock in self.stick.locks[: self.directions]]] * 2)
+
     def omit_user_functions(self, mbs: Any) -> None:
         """Let Exudyn evaluate constant moments itself."""
         if self.stick.constant_forces is not None:
@@ -204,6 +208,15 @@ class PlanarContact(StickingContact):
     def directions(self) -> int:
         """Number of directions of slip that locks hold."""
         return self.planar.most_locks
+
+    def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
+        """Let constraints hold these directions of slip; one holds all of them."""
+        super().lock(mbs, [self.directions] if len(directions) == self.directions else directions)
+
+    def force_places(self, data: Any) -> NDArray[Any]:
+        """Return the places of the forces along its locks, and of the constraint that holds all, shape (2, k)."""
+        together = data.GetObjectLTGAE(self.stick.locks[self.directions])
+        return np.array([super().force_places(data)[0], together], dtype=int)
 
     @property
     def free_to_slide(self) -> bool:

@@ -143,7 +143,7 @@ class _Run:
             elif self._target - t > ON_GRID * self._size:
                 self._size = 0.0  # Newton's method failed, and Exudyn chose a shorter step
             try:
-                self._aim(steps.send(None if begins else t))
+                self._aim(next(steps) if begins else steps.send(t))
             except StopIteration:
                 self._stopped = True
             for rows in self._rows:  # Exudyn writes them after this function
