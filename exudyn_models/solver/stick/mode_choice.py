@@ -198,16 +198,16 @@ class ModeChoice:
         return forces, accelerations, constraints
 
     def _iterate(self, t: float, solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]) -> None:
-        """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
+        """Solve until loads agree with accelerations and constraint forces, and store these."""
         for _ in range(ITERATIONS):
+            seen = self._data.GetODE2Coordinates_tt(), self._data.GetAECoordinates(), self._holding.copy()
             forces, accelerations, constraints = solve()
-            before = self._holding.copy()
+            if _settled(seen[0], accelerations) and _settled(seen[1], constraints):
+                return
             self._dynamics.store(accelerations, constraints)
             for i in self._varying:
                 self._holding[i] = self._contacts[i].strength(t)[0]
-            now = self._dynamics.forces()
-            changes = np.abs(now - forces).max(initial=0.0), np.abs(self._holding - before).max(initial=0.0)
-            if max(changes) <= SETTLED * max(np.abs(now).max(initial=0.0), self._holding.max(initial=0.0)):
+            if _settled(forces, self._dynamics.forces()) and _settled(seen[2], self._holding):
                 return
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s: loads that depend "
@@ -415,3 +415,8 @@ class ModeChoice:
             for contact in group.contacts:
                 left[self._contacts.index(contact)] = share
         return left
+
+
+def _settled(before: FloatArray, now: FloatArray) -> bool:
+    """Return whether values agree, apart from rounding errors."""
+    return float(np.abs(now - before).max(initial=0.0)) <= SETTLED * float(np.abs(now).max(initial=0.0))
