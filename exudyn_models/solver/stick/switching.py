@@ -85,7 +85,7 @@ class _Run:
         wanted = [kind for kind in (_Rows, _FileRows) if kind.chosen(outputs)]
         self._rows = [kind(outputs, self._start, self._step) for kind in wanted]
         self._reached = self._target = self._start
-        self._size, self._stopped, self._ends = 0.0, False, False
+        self._size, self._ends = 0.0, False
         self._announced, self._settled = -math.inf, list[float]()
         self._ended_at_once = -math.inf
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
@@ -144,11 +144,12 @@ class _Run:
                 self._size = 0.0  # Newton's method failed, and Exudyn chose a shorter step
             try:
                 self._aim(next(steps) if begins else steps.send(t))
+                goes_on = True
             except StopIteration:
-                self._stopped = True
+                goes_on = False
             for rows in self._rows:  # Exudyn writes them after this function
                 rows.switch(self._solver)
-            return not self._stopped
+            return goes_on
 
         return look
 
@@ -197,9 +198,11 @@ class _Run:
 
     def _keep(self, t: float) -> None:
         """Accept a step to the time t (s)."""
+        if ends := t >= self._end - ON_GRID * self._step:
+            t = self._end  # steps add up to it only within rounding errors
+            self._data.SetTime(t)
         self._reached = t
-        self._stopped = not self._own(self._mbs, t)
-        self._ends = self._stopped or t >= self._end - ON_GRID * self._step
+        self._ends = not self._own(self._mbs, t) or ends
         for rows in self._rows:
             rows.note(t, self._ends)
 
