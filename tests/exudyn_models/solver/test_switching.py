@@ -10,6 +10,7 @@ from free_bodies import ball, drive, new_model, rate_of, rotations, rotor, setti
 from free_bodies import changes_of as run
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
+from reference_model.trajectory import SimulationError
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha]
@@ -253,3 +254,51 @@ def test_a_brake_at_rest_whose_load_vanishes_for_a_while_opens_and_closes_then(p
     changes = run(mbs, 0.1, 0.01, SOLVERS.TrapezoidalIndex2)
     assert [change[2:] for change in changes] == [(0, 2), (2, 1), (1, 0)]
     assert [time for time, *_ in changes] == pytest.approx([start, end, 2.0 * end - start], abs=1e-9)
+
+
+def refused_steps(mbs, longest):
+    """Let Newton's method fail in steps above ``longest`` (s) before 0.03 s; return the ends of accepted steps."""
+    start = exu.ConfigurationType.StartOfStep
+    ends = []
+
+    def refuse(mbs, t):
+        refused = t < 0.03 and t - mbs.systemData.GetTime(start) > longest
+        return [math.inf, longest] if refused else [0.0, -1.0]
+
+    def note(mbs, t):
+        ends.append(t)
+        return True
+
+    mbs.SetPostNewtonUserFunction(refuse)
+    mbs.SetPostStepUserFunction(note)
+    return ends
+
+
+@pytest.mark.parametrize("longest", [2e-4, 1e-4 / 3.0])
+def test_steps_that_fail_are_shorter_for_a_while_and_a_change_between_them_is_exact(longest):
+    mbs, friction = braked(1.0, lambda t: 0.0)
+    ends = refused_steps(mbs, longest)
+    stops = 1.0 * INERTIA / SLIDING
+    assert run(mbs, 0.05, 1e-3) == [(pytest.approx(stops, abs=1e-12), int(friction.item), 1, 0)]
+    sizes = np.diff(ends)
+    assert (sizes > 0.0).all()
+    assert sizes[: len(ends) // 2].max() <= longest + 1e-12
+    assert sizes[-15:] == pytest.approx(np.full(15, 1e-3), abs=1e-12)
+    assert ends[-1] == 0.05
+
+
+def test_a_step_that_may_not_be_shorter_ends_the_run():
+    mbs, _ = braked(1.0, lambda t: 0.0)
+    refused_steps(mbs, 2e-4)
+    settings = settings_of(0.05, 50)
+    settings.timeIntegration.adaptiveStep = False
+    with pytest.raises(SimulationError, match="TrapezoidalIndex2 failed 0 s after the start"):
+        solve_dynamic(mbs, settings, SOLVERS.TrapezoidalIndex2)
+
+
+def test_a_change_of_mode_takes_few_steps():
+    """One step passes it, two find it and one returns to the grid; the solver starts once."""
+    mbs, _ = braked(0.0, lambda t: 40.0 * math.sin(20.0 * t))
+    changes = run(mbs, 2.0, 1e-2)
+    assert len(changes) > 20
+    assert 200 < mbs.sys["dynamicSolver"].it.currentStepIndex <= 200 + 5 * len(changes)
