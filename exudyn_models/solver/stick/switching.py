@@ -272,7 +272,7 @@ class _Run:
             if tried:
                 self._take_back()
             if high - low <= least:  # a margin jumps here
-                t = yield high + 2.0 * np.spacing(abs(high))  # not before it by rounding
+                t = yield high
                 now = self._modes.margins(t)
                 break
             bisects = tried % 4 == 3 or (turns_back and low == start)

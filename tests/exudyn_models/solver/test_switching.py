@@ -258,7 +258,7 @@ def test_a_brake_at_rest_whose_load_vanishes_for_a_while_opens_and_closes_then(p
 
 
 def refused_steps(mbs, longest, recommended=0.0):
-    """Let Newton's method fail in steps above ``longest`` (s) before 0.03 s; return ends of accepted and of refused."""
+    """Let Newton's method fail in long steps before 0.03 s; return ends (s) of accepted and of refused steps."""
     start = exu.ConfigurationType.StartOfStep
     ends, refused = [], []
 
@@ -309,7 +309,7 @@ def test_a_change_of_mode_takes_few_steps():
 
 
 def test_first_order_coordinates_start_again_from_the_start_of_a_step_that_is_taken_back():
-    """The integral of the speed by the trapezoidal rule is the angle, in which both integrators agree exactly."""
+    """Both integrators use the trapezoidal rule, so the integral of the speed is the angle."""
     mbs, _ = braked(0.0, lambda t: 40.0 * math.sin(20.0 * t))
     node = add_integrals(
         mbs, lambda mbs, t, item, q: mbs.systemData.GetODE2Coordinates_t().tolist()[:1], [0.0]
@@ -329,7 +329,7 @@ def test_runs_shorter_than_the_time_that_exudyn_resolves_end_at_their_end(end):
 
 def test_a_contact_opens_at_any_time_where_its_load_jumps_to_zero():
     """Rounding errors of the time of a step must not leave it before the jump."""
-    for jumps in np.random.default_rng(0).uniform(0.0, 0.02, 40):
+    for jumps in [0.01, *np.random.default_rng(0).uniform(0.0, 0.02, 20)]:
         mbs = new_model()
         law = BRAKE | {"normal_load": lambda time, jumps=jumps: 0.0 if time > jumps else 800.0}
         add_ring_friction(mbs, None, rotor(mbs, INERTIA, 2.0), **law)
