@@ -210,3 +210,17 @@ def test_points_with_a_load_of_radius_or_with_one_that_is_held_are_refused():
         contact.change(friction_coefficient=lambda radius: 0.3, normal_load=20.0)
     run(mbs, 1e-6, 1)
     assert float(mbs.GetSensorValues(moment)) == before
+
+
+def test_all_points_of_a_body_begin_to_slide_from_rest_without_ever_smaller_steps():
+    """Its points lose their first slips together, because the loss at one of them changes the slips of the others."""
+    for seed in range(12, 22):
+        random = np.random.default_rng(seed)
+        load = [*random.normal(size=2), 0.03 * random.normal()]
+        speeds = []
+        for step in (1e-3, 5e-4):
+            mbs, node, _ = body_on_feet()
+            push(mbs, node, load, lambda t: 6.0 + t)
+            solve_dynamic(mbs, settings_of(0.02, round(0.02 / step)), SOLVER)
+            speeds.append(mbs.systemData.GetODE2Coordinates_t())
+        assert speeds[0] == pytest.approx(speeds[1], abs=1e-5)
