@@ -75,6 +75,7 @@ class ModeChoice:
         self._meshes = self._loads.meshes
         places = [contact.force_places(self._data) for contact in contacts]
         self._places = np.hstack([np.empty((2, 0), dtype=int), *places])
+        self._all_places = np.unique(self._places)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped = set[StickingContact]()
         self._first_slips: dict[PlanarContact, float] = {}
@@ -134,7 +135,7 @@ class ModeChoice:
             contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
             contact.motion(self._mbs)
-        self._dynamics.evaluate(t, self._places)
+        self._dynamics.evaluate(t, self._all_places)
         slips = Slips(self._mbs, self._dynamics, self._contacts)
         for i in self._varying:
             self._holding[i], self._limits[i] = self._contacts[i].strength(t)
@@ -361,7 +362,8 @@ class ModeChoice:
         if self._resting.rows:
             margins = np.minimum(margins, np.maximum(self._checked_left(t), -1.0))  # finite without friction
         # The margin keeps its size, so interpolation halves the interval that contains the jump.
-        margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
+        if changed:
+            margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
         return margins
 
     def _checked_left(self, t: float) -> FloatArray:

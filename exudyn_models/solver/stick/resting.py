@@ -53,6 +53,11 @@ class Group:
         This share is as small as possible, or below ``enough``.
         """
         held = -self.mbs.systemData.GetAECoordinates()[self.places]
+        if not len(self.by_chosen):  # a contact in the plane alone
+            contact, own, limit = self.contacts[0], held[self.blocks[0]], self.contacts[0].strength(t)[1]
+            assert isinstance(contact, PlanarContact)
+            bound = contact.share_bound(own, limit[0])
+            return held, bound if bound < enough else float(contact.shares(own, np.array(limit))[0][0])
         limits = [
             (0.0, 0.0) if isinstance(contact.stick, GrowingLimit) else contact.strength(t)[1]
             for contact in self.contacts

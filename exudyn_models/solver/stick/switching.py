@@ -121,8 +121,7 @@ class _Run:
         newton = self._options.newton
         newton.maxIterations = max(newton.maxIterations, ITERATIONS)
         if self._planar:
-            # The direction of friction turns too fast for an old Jacobian.
-            newton.useModifiedNewton = False
+            newton.modifiedNewtonJacUpdatePerStep = True
             self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
             friction = max(contact.strength(self._start)[0] for contact in self._planar)
             newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
@@ -174,6 +173,8 @@ class _Run:
                 any(contact.free_to_slide for contact in self._planar) and self._slides.longest < self._step
             )
             options.newton.relativeTolerance = self._tolerances[not small]
+            # The direction of friction turns too fast for an old Jacobian.
+            options.newton.useModifiedNewton = not any(one.stick.slides for one in self._planar)
         self._look = look
         with starting_rates(self._mbs, self._reached):
             self._mbs.SolveDynamic(self._settings, SOLVER, keep)
