@@ -122,7 +122,7 @@ class _Look:
         data, self._solver, self._start = mbs.systemData, solver, options.startTime
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._others, self._rates = data.GetODE1Coordinates, data.GetODE1Coordinates_t
-        self._read = [self._positions, self._velocities, *[self._others] * (data.ODE1Size() > 0)]
+        self._works = data.ODE1Size() > 0
         automatic = solver not in IMPLICIT and solver.name not in INTERVALS
         self._count = StepCount(options.endTime) if automatic else None
         if self._count is not None:
@@ -146,7 +146,10 @@ class _Look:
         self._reached = t
         if t >= self._steps.next_time:
             self._steps.warn(t, self._positions())
-        self._finite = math.isfinite(sum(sum(read(CURRENT, False).tolist()) for read in self._read))
+        total = sum(self._velocities(CURRENT, False).tolist())  # positions are their integrals
+        if self._works:
+            total += sum(self._others(CURRENT, False).tolist())
+        self._finite = math.isfinite(total)
         if self._jumps is not None:
             self._jumps.look(t, self._rates())
         if self._count is not None:

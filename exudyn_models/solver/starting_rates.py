@@ -29,25 +29,35 @@ def starting_rates(mbs: Any, t: float) -> Iterator[None]:
     if data.ODE1Size() == 0:
         yield
         return
-    before, all_works = np.array(data.GetODE1Coordinates_t(initial)), _works_of(mbs)
-    for works in all_works:
-        works.held = []
+    before = np.array(data.GetODE1Coordinates_t(initial))
     with initialised_solver(mbs, t) as solver:
         data.SetAECoordinates(data.GetAECoordinates(initial))  # a load may be a reaction
-        solver.ComputeODE1RHS(mbs)
-        rates = np.array(solver.GetSystemResidual())[data.ODE2Size() :][: data.ODE1Size()]
-    if np.all(np.isfinite(rates)):  # otherwise the run will report it
-        data.SetODE1Coordinates_t(rates, initial)
-    for works in all_works:
-        works.held = rates[works.own(mbs)].tolist()
+        renew_rates(mbs, solver)
+    data.SetODE1Coordinates_t(data.GetODE1Coordinates_t(), initial)
     try:
         yield
     except BaseException:
         data.SetODE1Coordinates_t(before, initial)
         raise
     finally:
-        for works in all_works:
+        for works in _works_of(mbs):
             works.held = []
+
+
+def renew_rates(mbs: Any, solver: Any) -> None:
+    """Set the first-order rates of the present state, which an initialised ``solver`` evaluates."""
+    data = mbs.systemData
+    if data.ODE1Size() == 0:
+        return
+    all_works = _works_of(mbs)
+    for works in all_works:
+        works.held = []
+    solver.ComputeODE1RHS(mbs)
+    rates = np.array(solver.GetSystemResidual())[data.ODE2Size() :][: data.ODE1Size()]
+    if np.all(np.isfinite(rates)):  # otherwise the run will report it
+        data.SetODE1Coordinates_t(rates)
+    for works in all_works:
+        works.held = rates[works.own(mbs)].tolist()
 
 
 Power = Callable[[Any, float], float]

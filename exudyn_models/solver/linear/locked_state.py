@@ -193,7 +193,10 @@ def _settle(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> list[lis
     """Choose the modes of the contacts; return the contacts that share a load."""
     planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
     choice = ModeChoice(mbs, t, contacts, SlidingSteps(mbs, planar, STEP), STEP)
+    data, initial = mbs.systemData, exu.ConfigurationType.Initial
+    data.SetAECoordinates(data.GetAECoordinates(initial))  # a load may be a reaction
     choice.settle(t)
+    data.SetSystemState(data.GetSystemState(), initial)
     return choice.groups
 
 

@@ -48,24 +48,25 @@ class LoadedRows:
 
         ``limits``, shape (k, 2), are the present limits of the forces against slip forward and backward.
         """
-        states, power, random = self.pinned.copy(), self.loads, np.random.default_rng(0)
-        meshes = any(law is not None for law in self.laws)
-        matrix = to_rates + np.diag(REGULAR * np.where(np.diag(to_rates) > 0.0, np.diag(to_rates), 1.0))
+        states, power, diagonal = self.pinned.copy(), self.loads, np.diag(to_rates)
+        meshes, pinned = any(law is not None for law in self.laws), self.pinned != 0
+        matrix = to_rates.copy()
+        matrix.flat[:: len(matrix) + 1] += REGULAR * np.where(diagonal > 0.0, diagonal, 1.0)
+        random = np.random.default_rng(0) if meshes else None
         for tried in range(MOST):
-            if meshes and tried and tried % TOGETHER == 0:
-                states = np.where(self.pinned != 0, self.pinned, random.integers(-1, 2, len(states)))
+            if random is not None and tried and tried % TOGETHER == 0:
+                states = np.where(pinned, self.pinned, random.integers(-1, 2, len(states)))
                 states[np.isinf(limits[:, 1]) & (states < 0)] = 0
             forces, power = self._at(states, power, matrix, rates, limits)
             left = rates + to_rates @ forces
-            now = self._limits(power, limits)
-            weight = np.maximum(np.abs(rates), np.diag(to_rates) * np.abs(forces))
-            wanted = np.where(
-                states == 0,
-                np.where(forces < -now[:, 0] - CLOSE * np.abs(forces), 1, 0)
-                - np.where(forces > now[:, 1] + CLOSE * np.abs(forces), 1, 0),
-                np.where(states * left < -CLOSE * weight, 0, states),
-            )
-            wanted = np.where(self.pinned != 0, self.pinned, wanted)
+            forward, backward = (self._limits(power, limits) if meshes else limits).T
+            sizes = np.abs(forces)
+            above = CLOSE * sizes
+            wanted = np.subtract(forces < -forward - above, forces > backward + above, dtype=int)
+            if states.any():
+                turns = states * left < -CLOSE * np.maximum(np.abs(rates), diagonal * sizes)
+                wanted = np.where(states == 0, wanted, np.where(turns, 0, states))
+                wanted[pinned] = self.pinned[pinned]
             wrong = np.flatnonzero(wanted != states)
             if not len(wrong):
                 return forces, left
@@ -89,22 +90,22 @@ class LoadedRows:
         limits: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Return the forces in these states, and the moments of the meshes; these begin with ``power``."""
-        size, slides = len(states), states != 0
-        loads = power
+        slides, loads = np.flatnonzero(states).tolist(), power
         for _ in range(4 * len(loads) + 4):
             system, right = matrix.copy(), -rates
-            system[slides] = np.eye(size)[slides]
-            right[slides] = np.where(states > 0, -limits[:, 0], limits[:, 1])[slides]
-            for i, law in enumerate(self.laws):
-                if law is None or not slides[i]:
-                    continue
-                load, way = loads[law.place], int(states[i])
+            for i in slides:
+                law, way = self.laws[i], int(states[i])
                 at = (1, -1).index(way)
-                scale = limits[i, at] / self.sliding[i, at]
-                slope = scale * law.slope_at(load, way)
-                system[i] += slope * self.by_force[law.place]
-                right[i] = -scale * way * law.limit(0.0, way) - slope * self.loads[law.place]
+                system[i] = 0.0
+                system[i, i], right[i] = 1.0, -way * limits[i, at]
+                if law is not None:
+                    scale = limits[i, at] / self.sliding[i, at]
+                    slope = scale * law.slope_at(loads[law.place], way)
+                    system[i] += slope * self.by_force[law.place]
+                    right[i] = -scale * way * law.limit(0.0, way) - slope * self.loads[law.place]
             forces = np.linalg.solve(system, right)
+            if not len(loads):
+                break
             found = self.loads + self.by_force @ forces
             same = np.abs(found - loads).max(initial=0.0) <= CLOSE * np.abs(found).max(initial=0.0)
             loads = found

@@ -8,7 +8,7 @@ contact at a limit may slip against its force. Redundant contacts share a load, 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import combinations, islice, pairwise
+from itertools import accumulate, combinations, islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -51,20 +51,28 @@ class Sets:
     laws: Sequence[Law | None]
     loaded: LoadedRows | None = None
 
-    def only(self, chosen: Sequence[int]) -> "Sets":
-        """Return the sets of chosen contacts, whose rows follow each other."""
-        counts = [self.blocks[i].stop - self.blocks[i].start for i in chosen]
-        ends = np.cumsum([0, *counts]).tolist()
-        return Sets([slice(*pair) for pair in pairwise(ends)], [self.laws[i] for i in chosen])
+    def only(self, chosen: Sequence[int], loaded: LoadedRows | None) -> "Sets":
+        """Return the sets of chosen contacts, whose rows follow each other and may be ``loaded``."""
+        if self.on_axes:
+            return Sets(self.blocks[: len(chosen)], self.laws[: len(chosen)], loaded)
+        ends = accumulate((self.blocks[i].stop - self.blocks[i].start for i in chosen), initial=0)
+        return Sets([slice(*pair) for pair in pairwise(ends)], [self.laws[i] for i in chosen], loaded)
+
+    @property
+    def on_axes(self) -> bool:
+        """True if each contact has one row."""
+        return not any(self.laws)
 
     @property
     def owner(self) -> NDArray[Any]:
         """Number of the contact of each row, shape (k,)."""
+        if self.on_axes:
+            return np.arange(len(self.blocks))
         return np.repeat(np.arange(len(self.blocks)), [rows.stop - rows.start for rows in self.blocks])
 
     def sizes(self, slips: FloatArray) -> FloatArray:
         """Return the size of the slip of each contact."""
-        if not any(self.laws):
+        if self.on_axes:
             return np.abs(slips)
         pairs = zip(self.blocks, self.laws, strict=True)
         return np.array([law(slips[rows])[0] if law else abs(slips[rows.start]) for rows, law in pairs])
@@ -76,7 +84,7 @@ class Sets:
 
         ``limits``, shape (contacts, 2), are the largest forces against slip forward and backward.
         """
-        if not any(self.laws):
+        if self.on_axes:
             return (self.loaded or unloaded(len(rates))).forces(to_rates, rates, limits)
         return self._smooth_forces(to_rates, rates, limits)
 
@@ -152,7 +160,9 @@ def rest_or_slip(
     ``noise`` count as zero.
     """
     count, owner = len(sets.blocks), sets.owner
-    own = np.sqrt(np.bincount(owner, (to_rates**2 * (owner[:, None] == owner)).sum(axis=1), count))
+    own = np.abs(np.diag(to_rates))
+    if not sets.on_axes:
+        own = np.sqrt(np.bincount(owner, (to_rates**2 * (owner[:, None] == owner)).sum(axis=1), count))
     finite = np.where(np.isfinite(static), static, 0.0)
     least = np.maximum(SLIPS * np.maximum(own * finite.max(axis=1), sets.sizes(rates)), sets.sizes(noise))
 
@@ -179,16 +189,16 @@ def rest_or_slip(
     return np.asarray(left * moves[owner])
 
 
-def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[int], FloatArray]:
-    """Return the contacts that hold all others, and how the other slips depend on their slips.
+def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[int], FloatArray, FloatArray]:
+    """Return the contacts that hold all others, the inverse of ``gram`` among them, and how others depend on them.
 
     ``gram``, shape (k, k), contains the products of the gradients of slip in the metric of the mass; joints reduce
-    them. ``preferred`` contacts are chosen first. The second result, shape (k - chosen, chosen), has the rows of the
+    them. ``preferred`` contacts are chosen first. The last result, shape (k - chosen, chosen), has the rows of the
     remaining contacts in their order.
     """
     rest, lengths = gram, np.diag(gram)
-    if _clearly_independent(gram, lengths):
-        return list(range(len(gram))), np.zeros((0, len(gram)))
+    if (of_all := _clear_inverse(gram)) is not None:
+        return list(range(len(gram))), of_all, np.zeros((0, len(gram)))
     weights = np.zeros(len(gram))
     np.divide(1.0, lengths, out=weights, where=lengths > 0.0)
     weights[list(preferred)] *= PREFERRED
@@ -202,19 +212,21 @@ def independent_rows(gram: FloatArray, preferred: Sequence[int]) -> tuple[list[i
         weights[i] = 0.0
     chosen.sort()
     others = [i for i in range(len(gram)) if i not in chosen]
-    if not chosen or not others:
-        return chosen, np.zeros((len(others), len(chosen)))
-    by_chosen = np.linalg.solve(gram[np.ix_(chosen, chosen)], gram[np.ix_(chosen, others)]).T
+    of_chosen = np.linalg.inv(gram[np.ix_(chosen, chosen)])
+    by_chosen = (of_chosen @ gram[np.ix_(chosen, others)]).T
     by_chosen[np.abs(by_chosen) < DEPENDENT] = 0.0
-    return chosen, np.asarray(by_chosen, float)
+    return chosen, np.asarray(of_chosen, float), np.asarray(by_chosen, float)
 
 
-def _clearly_independent(gram: FloatArray, lengths: FloatArray) -> bool:
-    """Return whether a Cholesky decomposition shows that no gradient depends on others."""
-    if not len(gram) or not lengths.min() > 0.0:
-        return False
-    sizes = np.sqrt(lengths)
+def _clear_inverse(gram: FloatArray) -> FloatArray | None:
+    """Return the inverse, or None if rows are not clearly independent."""
+    lengths = np.diag(gram)
+    if not (lengths > 0.0).all():
+        return None
     try:
-        return bool((np.diag(np.linalg.cholesky(gram / np.outer(sizes, sizes))) ** 2 > CLEARLY).all())
+        inverse = np.linalg.inv(gram)
     except np.linalg.LinAlgError:
-        return False
+        return None
+    # The inverse of this product is the part of each squared length that the others do not hold.
+    shares = lengths * np.diag(inverse)
+    return np.asarray(inverse, float) if ((shares > 0.0) & (shares * CLEARLY < 1.0)).all() else None

@@ -42,7 +42,7 @@ class Dynamics:
     def __init__(self, mbs: Any, t: float, step: float) -> None:
         self._mbs, self._data, self.difference = mbs, mbs.systemData, DIFFERENCE * step
         with initialised_solver(mbs, t) as solver:
-            self._solver = solver
+            self.solver = solver
         self._size, self._count = self._data.ODE2Size(), self._data.AEsize()
         self._rotations = [
             (self._data.GetNodeLTGODE2(node)[3:6], mbs.GetNode(node)["referenceCoordinates"][3:])
@@ -55,16 +55,18 @@ class Dynamics:
 
     def evaluate(self, t: float, without: Sequence[int] | NDArray[Any] = ()) -> None:
         """Evaluate M, J, c and the inverse at the present state and the time t (s), ``without`` some constraints."""
-        data, size, solver = self._data, self._size, self._solver
+        data, size, solver = self._data, self._size, self.solver
         data.SetTime(t)
         solver.ComputeMassMatrix(self._mbs)
         self.mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
-        if self._count:
+        if len(without) < self._count:
             solver.SetSystemJacobian(np.zeros((data.SystemSize(), data.SystemSize())))
             solver.ComputeJacobianAE(self._mbs, 1.0, 1.0, 1.0)
             self.gradients = np.array(solver.GetSystemJacobian())[-self._count :, :size]
             self.gradients[list(without)] = 0.0
             self.rates = self._prescribed_rates(t) if self.gradients.any() else np.zeros(self._count)
+        else:
+            self.gradients, self.rates = np.zeros((self._count, size)), np.zeros(self._count)
         key = self.mass.tobytes(), self.gradients.tobytes()
         if key not in self._inverses:
             if len(self._inverses) == KEPT:
@@ -91,8 +93,8 @@ class Dynamics:
         return np.where(self.gradients.any(axis=1), rates, 0.0)
 
     def _slips_of_constraints(self) -> FloatArray:
-        self._solver.ComputeAlgebraicEquations(self._mbs, True)
-        return np.array(self._solver.GetSystemResidual())[-self._count :]
+        self.solver.ComputeAlgebraicEquations(self._mbs, True)
+        return np.array(self.solver.GetSystemResidual())[-self._count :]
 
     def prescribed_speeds(self, times: FloatArray) -> FloatArray:
         """Return the speeds that constraints prescribe at ``times`` in s, shape (len(times), m)."""
@@ -129,21 +131,18 @@ class Dynamics:
 
     def forces(self) -> FloatArray:
         """Return h, shape (n,), at the present state, constraint forces and time."""
-        self._solver.ComputeODE2RHS(self._mbs)
-        return np.array(self._solver.GetSystemResidual())[: self._size]
+        self.solver.ComputeODE2RHS(self._mbs)
+        return np.array(self.solver.GetSystemResidual())[: self._size]
 
     def solution(self, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return accelerations, shape (n,), and constraint forces, shape (m,), under generalised ``forces``."""
         found = self.inverse @ np.concatenate((forces, self.rates))
         return found[: self._size], found[self._size :]
 
-    def store(
-        self, accelerations: FloatArray, constraints: FloatArray, configurations: Sequence[Any]
-    ) -> None:
-        """Take accelerations and constraint forces as the values of ``configurations``."""
-        for configuration in configurations:
-            self._data.SetODE2Coordinates_tt(accelerations, configuration)
-            self._data.SetAECoordinates(constraints, configuration)
+    def store(self, accelerations: FloatArray, constraints: FloatArray) -> None:
+        """Take accelerations and constraint forces as the present ones."""
+        self._data.SetODE2Coordinates_tt(accelerations)
+        self._data.SetAECoordinates(constraints)
 
 
 def inverse_of(mass: FloatArray, gradients: FloatArray) -> FloatArray:

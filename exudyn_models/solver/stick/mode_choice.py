@@ -7,7 +7,6 @@ slip when the contact slides faster.
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import exudyn as exu
@@ -19,9 +18,9 @@ from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.active_set import LoadedRows
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, OneWayLaw
 from exudyn_models.solver.rows.moment_loads import Loads
-from exudyn_models.solver.stick.complementarity import rest_or_slip
+from exudyn_models.solver.stick.complementarity import independent_rows, rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
-from exudyn_models.solver.stick.resting import Line, Resting
+from exudyn_models.solver.stick.resting import NEAR, Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
@@ -37,10 +36,6 @@ ITERATIONS = 200
 
 SHRUNK = 1e-6
 """Relative reduction of the capacities of contacts that cannot hold their load any more, so some release."""
-
-NEAR = 0.02
-"""Unused share of capacity below which loads are computed again, because the loads in Exudyn's steps contain
-errors."""
 
 AHEAD = 1e-5
 """Share of a step to look ahead for the flank of a spring that is pressed."""
@@ -71,15 +66,18 @@ class ModeChoice:
         self._at_meshes = [i for i, one in enumerate(contacts) if isinstance(one.stick, MeshLaw)]
         self._one_way = [i for i, one in enumerate(contacts) if isinstance(one.stick, OneWayLaw)]
         self._growing = [i for i, one in enumerate(contacts) if isinstance(one.stick, GrowingLimit)]
+        self._ratios = np.array([one.stick.static_ratio for one in contacts])[:, None]
         self._loads = Loads(mbs, [one.stick for one in contacts])
         self._meshes = self._loads.meshes
         places = [contact.force_places(self._data) for contact in contacts]
         self._places = np.hstack([np.empty((2, 0), dtype=int), *places])
-        self._all_places = np.unique(self._places)
+        self._locks = np.unique(self._places)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
-        self._slipped = set[StickingContact]()
+        self._slipped, self._held = set[StickingContact](), set[int]()
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
+        self._dynamics.evaluate(t, self._locks)
+        self._slips = Slips(mbs, self._dynamics, contacts)
         self._holding, self._limits = np.zeros(len(contacts)), np.zeros((len(contacts), 2))
         for i, contact in enumerate(contacts):
             self._holding[i], self._limits[i] = contact.strength(t)
@@ -87,12 +85,16 @@ class ModeChoice:
 
     def begin(self, t: float) -> None:
         """Let velocities satisfy all joints, by an impact without friction."""
-        initial = exu.ConfigurationType.Initial
-        self._load()
+        self._data.SetAECoordinates(self._data.GetAECoordinates(exu.ConfigurationType.Initial))
         self._dynamics.evaluate(t)
         change = self._dynamics.violation()
         if change.any():
-            self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t(initial) + change, initial)
+            self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t() + change)
+
+    @property
+    def solver(self) -> Any:
+        """Initialised solver that evaluates the model."""
+        return self._dynamics.solver
 
     @property
     def groups(self) -> list[list[StickingContact]]:
@@ -105,15 +107,15 @@ class ModeChoice:
         Friction keeps this excess of speed in the direction of the slip, so subtract it in this direction.
         """
         for contact, first in list(self._first_slips.items()):
-            motion = contact.motion(self._mbs, exu.ConfigurationType.Initial)
+            motion = contact.motion(self._mbs)
             if contact.free_to_slide and motion.potential < GROWN * first:
                 continue
             del self._first_slips[contact]
             if contact.free_to_slide:
                 self._dynamics.evaluate(t)
                 slips = Slips(self._mbs, self._dynamics, [contact])
-                slips.give(dict(enumerate((1.0 - first / motion.potential) * slips.now)), [])
-        self._slides.starts = bool(self._first_slips)
+                rows, to_forces, _ = independent_rows(slips.to_rates, [])
+                slips.give(rows, to_forces, (1.0 - first / motion.potential) * slips.now[rows])
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
@@ -128,34 +130,37 @@ class ModeChoice:
 
         Until ``end``, contacts that have begun to slip have sliding friction, even if others change their modes.
         """
-        self._load()
         for spring in self._springs:
             spring.choose(self._mbs, AHEAD * self._step)
         for contact in self._contacts:
-            contact.enter(self._mbs, contact.mode)
+            if contact.stick.entered is not contact.stick.mode:
+                contact.enter(self._mbs, contact.mode)
         for contact in self._planar:
             contact.motion(self._mbs)
-        self._dynamics.evaluate(t, self._all_places)
-        slips = Slips(self._mbs, self._dynamics, self._contacts)
+        slips = self._slips_at(t)
+        if self._planar:
+            slips.allow()
         for i in self._varying:
             self._holding[i], self._limits[i] = self._contacts[i].strength(t)
-        bounds = slips.bounds(self._present()[1], self._holding)
+        bounds = slips.bounds(self._dynamics.solution(self._dynamics.forces())[0], self._holding)
         still = slips.sets.sizes(slips.now) <= slips.still(self._step, bounds)
-        still[self._one_way] |= slips.now[[slips.sets.blocks[i].start for i in self._one_way]] < 0.0
+        for i in self._one_way:
+            still[i] |= slips.now[slips.firsts[i]] < 0.0
         modes = [
             Mode.LOCKED if at_rest or contact in self._ended else contact.sliding_mode(slips.now[rows])
             for contact, at_rest, rows in zip(self._contacts, still.tolist(), slips.sets.blocks, strict=True)
         ]
         self._iterate(t, lambda: self._choose(t, slips, modes, bounds))
-        held = set(self._resting.rows)
-        for contact, mode, rows in zip(self._contacts, modes, slips.sets.blocks, strict=True):
-            if mode == Mode.LOCKED and contact.stick.slides:
-                self._slipped.add(contact)
-            own = range(rows.start, rows.stop) if contact.mode == Mode.LOCKED else ()
-            contact.lock(self._mbs, [i for i, row in enumerate(own) if row in held])
-        firsts = [rows.start for rows in slips.sets.blocks]
-        self._rows = slips.rows[firsts]
-        self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
+        self._slipped.update(
+            contact
+            for contact, mode in zip(self._contacts, modes, strict=True)
+            if mode is Mode.LOCKED and contact.stick.mode is not mode and contact.stick.slides
+        )
+        self._lock(slips)
+        self._rows = slips.rows[slips.firsts]
+        self._directions = np.array(
+            [int(one.mode) if one.stick.slides else 0 for one in self._contacts], float
+        )
         self._offsets = 1.0 - np.abs(self._directions)
         simple = not (self._varying or self._springs or self._resting.groups)
         self._line = (
@@ -165,35 +170,44 @@ class ModeChoice:
         self._slides.survey()
         self.end(())
 
+    def _lock(self, slips: Slips) -> None:
+        """Let constraints hold the rows of contacts at rest."""
+        before, self._held = self._held, set(self._resting.rows)
+        owner = slips.sets.owner
+        for i in {int(owner[row]) for row in before ^ self._held}:
+            own = enumerate(slips.rows_of([i]))
+            self._contacts[i].lock(self._mbs, [k for k, row in own if row in self._held])
+
     def survey(self, t: float) -> None:
         """Find the slips that joints and locks allow at sliding contacts in the plane."""
         if sliding := [contact for contact in self._planar if contact.stick.slides]:
             self._dynamics.evaluate(t)
-            Slips(self._mbs, self._dynamics, sliding)
+            Slips(self._mbs, self._dynamics, sliding).allow()
 
-    def _load(self) -> None:
-        self._data.SetSystemState(self._data.GetSystemState(exu.ConfigurationType.Initial), CURRENT)
+    def _slips_at(self, t: float) -> Slips:
+        """Return the slips at the present state and the time t (s), without locks."""
+        self._dynamics.evaluate(t, self._locks)
+        self._slips = self._slips.at_present(self._mbs)
+        return self._slips
 
     def _present(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return generalised forces, accelerations and constraint forces of the present modes."""
-        forces = self._dynamics.forces()
-        return forces, *self._dynamics.solution(forces)
+        forces, resting = self._dynamics.forces(), self._resting
+        held, accelerations, constraints = self._slips.hold(resting.rows, resting.to_forces, forces)
+        constraints[resting.places] = -held
+        return forces, accelerations, constraints
 
-    def _iterate(
-        self,
-        t: float,
-        solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
-        configurations: Sequence[Any] = (CURRENT, exu.ConfigurationType.Initial),
-    ) -> None:
-        """Solve until loads agree with the constraint forces that they may depend on, and store the solution."""
+    def _iterate(self, t: float, solve: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]) -> None:
+        """Solve until loads agree with accelerations and constraint forces, and store these."""
         for _ in range(ITERATIONS):
+            seen = self._data.GetODE2Coordinates_tt(), self._data.GetAECoordinates(), self._holding.copy()
             forces, accelerations, constraints = solve()
-            before = np.concatenate((forces, self._holding))
-            self._dynamics.store(accelerations, constraints, configurations)
+            if _settled(seen[0], accelerations) and _settled(seen[1], constraints):
+                return
+            self._dynamics.store(accelerations, constraints)
             for i in self._varying:
                 self._holding[i] = self._contacts[i].strength(t)[0]
-            now = np.concatenate((self._dynamics.forces(), self._holding))
-            if np.abs(now - before).max() <= SETTLED * np.abs(now).max():
+            if _settled(forces, self._dynamics.forces()) and _settled(seen[2], self._holding):
                 return
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s: loads that depend "
@@ -206,51 +220,59 @@ class ModeChoice:
         """Enter the modes under the present loads; return these, accelerations and constraint forces."""
         contacts, blocks = self._contacts, slips.sets.blocks
         for contact, mode, holding in zip(contacts, modes, self._holding.tolist(), strict=True):
-            contact.enter(self._mbs, Mode.OPEN if holding == 0.0 else mode)
-        still = [i for i, contact in enumerate(contacts) if contact.mode == Mode.LOCKED]
+            mode = Mode.OPEN if holding == 0.0 else mode
+            if contact.stick.mode is not mode:
+                contact.enter(self._mbs, mode)
+        still = [i for i, contact in enumerate(contacts) if contact.stick.mode is Mode.LOCKED]
         self._loads.act(False)
-        _, accelerations, constraints = self._present()
+        accelerations, constraints = self._dynamics.solution(self._dynamics.forces())
         self._loads.act(True)
         found = self._slips_that_begin(t, slips, still, accelerations, constraints)
-        wanted, first, begun = dict[int, float](), list[int](), list[int]()
+        wanted, resting, begun = dict[int, float](), list[int](), list[int]()
+        moves = slips.sets.sizes(found)
         for i in still:
-            contact, slip, own = contacts[i], found[blocks[i]], range(len(found))[blocks[i]]
-            if not slip.any():
-                wanted.update(dict.fromkeys(own, 0.0))
-                first += own
-            elif isinstance(contact, PlanarContact):
+            contact, first = contacts[i], slips.firsts[i]
+            if moves[i] == 0.0:
+                resting.append(i)
+                continue
+            if isinstance(contact, PlanarContact):
+                slip = found[blocks[i]]
                 contact.planar.direction = np.zeros(3)
-                contact.planar.direction[: len(slip)] = (
-                    slip / contact.planar.scales / slips.sets.sizes(found)[i]
-                )
+                contact.planar.direction[: len(slip)] = slip / contact.planar.scales / moves[i]
                 begun.append(i)
-            elif slip[0] * slips.now[own[0]] < 0.0:  # a rounding error
-                wanted[own[0]] = 0.0
+            elif found[first] * slips.now[first] < 0.0:  # a rounding error
+                wanted[first] = 0.0
+            contact.enter(self._mbs, contact.sliding_mode(found[blocks[i]]))
         wanted |= self._first_slips_of(begun, slips, found, bounds)
-        resting = [i for i in still if not found[blocks[i]].any()]
-        for i in still:
-            if i not in resting:
-                contacts[i].enter(self._mbs, contacts[i].sliding_mode(found[blocks[i]]))
-        to_loads = self._to_loads(slips)
-        self._resting.divide(contacts, slips, resting, self._places, self._resting.rows, to_loads)
-        slips.give(wanted, first)
+        self._resting.divide(
+            contacts, slips, resting, self._places, self._resting.rows, self._to_loads(slips)
+        )
+        self._give(slips, wanted)
         self._find_effects_of_meshes(slips)
-        forces = self._dynamics.forces()
-        held, accelerations, constraints = slips.hold(self._resting.rows, forces)
-        constraints[self._resting.places] = -held
-        return forces, accelerations, constraints
+        return self._present()
+
+    def _give(self, slips: Slips, wanted: dict[int, float]) -> None:
+        """Stop the slips of rows at rest, and give other rows the slips ``wanted`` unless these conflict."""
+        rows, to_forces = self._resting.rows, self._resting.to_forces
+        if wanted:
+            held, rows = rows, [*rows, *wanted]
+            chosen, to_forces, _ = independent_rows(slips.among(rows), range(len(held)))
+            rows = [rows[i] for i in chosen]
+        slips.give(rows, to_forces, np.array([wanted.get(row, 0.0) for row in rows]))
 
     def _to_loads(self, slips: Slips) -> FloatArray:
         """Return the moments that let limits grow, by unit forces along all locks, shape (m, k)."""
-        return self._loads.by_forces(slips.to_loads, [rows.start for rows in slips.sets.blocks])
+        if not self._growing:
+            return np.zeros((0, len(slips.rows)))
+        return self._loads.by_forces(slips.to_loads, slips.firsts)
 
     def _find_effects_of_meshes(self, slips: Slips) -> None:
         """Find how friction of meshes changes their moments while the present locks hold."""
         if not self._at_meshes:
             return
-        own = [slips.sets.blocks[i].start for i in self._at_meshes]
+        own = [slips.firsts[i] for i in self._at_meshes]
         held, to_loads = self._resting.rows, slips.to_loads(self._meshes.places)
-        holding = np.linalg.solve(slips.to_rates[np.ix_(held, held)], -slips.to_rates[np.ix_(held, own)])
+        holding = -self._resting.to_forces @ slips.to_rates[np.ix_(held, own)]
         self._meshes.by_friction = to_loads[:, own] + to_loads[:, held] @ holding
 
     def _loaded(
@@ -283,31 +305,27 @@ class ModeChoice:
     ) -> FloatArray:
         """Return the slip accelerations of the contacts ``still``; all others are arbitrary."""
         still = [*still, *(i for i in self._growing if i not in still)]
-        contacts = [self._contacts[i] for i in still]
-        rows = [row for i in still for row in range(len(slips.rows))[slips.sets.blocks[i]]]
+        contacts, rows = [self._contacts[i] for i in still], slips.rows_of(still)
         for i in self._varying:
             self._limits[i] = self._contacts[i].strength(t)[1]
-        static = self._limits[list(still)]
-        ratios = np.array([[contact.stick.static_ratio] for contact in contacts]).reshape(-1, 1)
-        overloads = np.array([contact in self._overloaded for contact in contacts])
-        growing = np.array([i in self._growing for i in still], dtype=bool)[:, None]
-        largest = np.where(growing, static, static.max(axis=1, initial=0.0)[:, None])
-        shrunk = SHRUNK * overloads[:, None] * largest
+        static, ratios = self._limits[still], self._ratios[still]
         loaded = self._loaded(slips, still, rows, constraints, static / ratios)
+        shrunk = SHRUNK * static.max(axis=1, initial=0.0)[:, None]
         if loaded is not None:
+            growing = [i in self._growing for i in still]
+            shrunk = np.where(np.array(growing, dtype=bool)[:, None], SHRUNK * static, shrunk)
             static[[i in self._one_way for i in still]] = 0.0, math.inf
             shrunk = np.where(np.isfinite(static), shrunk, 0.0)
-        sliding = np.minimum(static - shrunk, static / ratios)
-        slipped = np.array([one in self._slipped or one.stick.slides for one in contacts], dtype=bool)[
-            :, None
-        ]
+        capacities = static - np.array([one in self._overloaded for one in contacts])[:, None] * shrunk
+        sliding = np.minimum(capacities, static / ratios)
+        slipped = np.array([one in self._slipped or one.stick.slides for one in contacts], dtype=bool)
         found = np.zeros(len(slips.rows))
         found[rows] = rest_or_slip(
-            slips.to_rates[np.ix_(rows, rows)],
+            slips.among(rows),
             slips.rates(accelerations)[rows],
             slips.noise(accelerations)[rows],
-            replace(slips.sets.only(still), loaded=loaded),
-            np.where(slipped, sliding, static - shrunk),
+            slips.sets.only(still, loaded),
+            np.where(slipped[:, None], sliding, capacities),
             sliding,
         )
         return found
@@ -335,16 +353,16 @@ class ModeChoice:
                 wanted.update((row, float(time * found[row])) for row in range(len(found))[blocks[i]])
         return wanted
 
+    def hold(self) -> bool:
+        """Return whether all modes clearly go on at the present state; if False, ``margins`` decides."""
+        return self._line is not None and self._line.holds()
+
     def margins(self, t: float) -> FloatArray:
         """Return numbers that fall below zero when the present modes end, shape (contacts + springs,).
 
         They are the slip in the direction of sliding (m/s or rad/s), or the unused share of the capacity of contacts
         at rest. They change their sign where friction vanishes or begins.
         """
-        if self._line is not None:
-            now = self._line.margins(self._data)
-            if now.min() >= NEAR or (now[self._resting.alone] >= NEAR).all():
-                return now
         springs = [spring.margin(self._mbs) for spring in self._springs]
         return np.append(self._margins_of_contacts(t), springs)
 
@@ -372,8 +390,8 @@ class ModeChoice:
         least = left.min()
         if least < NEAR:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
-            self._dynamics.evaluate(t)
-            self._iterate(t, self._present, (CURRENT,))
+            self._slips_at(t)
+            self._iterate(t, self._present)
             left = self._left(t)
             if least < -1.0 and left.min() > 0.0:
                 raise SimulationError(
@@ -398,3 +416,8 @@ class ModeChoice:
             for contact in group.contacts:
                 left[self._contacts.index(contact)] = share
         return left
+
+
+def _settled(before: FloatArray, now: FloatArray) -> bool:
+    """Return whether values agree, apart from rounding errors."""
+    return float(np.abs(now - before).max(initial=0.0)) <= SETTLED * float(np.abs(now).max(initial=0.0))

@@ -17,6 +17,10 @@ from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
 from reference_model.systems import FloatArray
 
+NEAR = 0.02
+"""Unused share of capacity below which loads are computed again, because the loads in Exudyn's steps contain
+errors."""
+
 UNDETERMINED = 1e-9
 """Relative effect of an undetermined force on the capacity shares below which it is ignored."""
 
@@ -102,11 +106,15 @@ class Group:
 
 
 class Resting:
-    """Contacts at rest of a model, in groups that share loads; ``rows`` are held by constraints."""
+    """Contacts at rest of a model, in groups that share loads.
+
+    ``rows`` are held by constraints, and ``to_forces`` is the inverse of ``Slips.among`` these rows.
+    """
 
     def __init__(self, mbs: Any) -> None:
         self._data, self._mbs = mbs.systemData, mbs
         self.rows: list[int] = []
+        self.to_forces = np.empty((0, 0))
         self.places = np.empty(0, dtype=int)
         self.alone, self.alone_places = list[int](), np.empty(0, dtype=int)
         self.groups: list[Group] = []
@@ -126,25 +134,42 @@ class Resting:
         contact; rows ``before`` are preferred. Forces along all rows change the moments of meshes by ``to_loads``,
         shape (m, k).
         """
-        own_rows = [range(len(slips.rows))[slips.sets.blocks[i]] for i in resting]
-        rows = [row for own in own_rows for row in own]
-        owner = np.repeat(np.arange(len(resting)), [len(own) for own in own_rows]).astype(int)
-        chosen, by_chosen = independent_rows(
-            slips.to_rates[np.ix_(rows, rows)], [i for i, row in enumerate(rows) if row in before]
+        rows = slips.rows_of(resting)
+        chosen, self.to_forces, by_chosen = independent_rows(
+            slips.among(rows), [i for i, row in enumerate(rows) if row in before]
         )
-        others = [i for i in range(len(rows)) if i not in chosen]
         self.rows, self.groups, self.alone = [rows[i] for i in chosen], [], []
-        complete = [len(set(own).difference(self.rows)) == 0 for own in own_rows]
-        self.places = places[np.array(complete, dtype=int)[owner[chosen]], self.rows]
+        if len(chosen) == len(rows) and slips.sets.on_axes:
+            self.places, self.alone = places[0, self.rows], list(resting)
+        else:
+            held = set(self.rows)
+            whole = set(slips.rows_of([i for i in resting if held.issuperset(slips.rows_of([i]))]))
+            self.places = places[[int(row in whole) for row in self.rows], self.rows]
+            self._group(contacts, slips, resting, rows, chosen, by_chosen, to_loads)
+        self.alone_places = places[0, [slips.firsts[i] for i in self.alone]]
+        for i, place in zip(self.alone, self.alone_places.tolist(), strict=True):
+            stick = contacts[i].stick
+            stick.holds = partial(self._force_at, place)
+            if isinstance(stick, MeshLaw):
+                stick.shifts = None
+
+    def _group(
+        self,
+        contacts: Sequence[StickingContact],
+        slips: Slips,
+        resting: Sequence[int],
+        rows: Sequence[int],
+        chosen: Sequence[int],
+        by_chosen: FloatArray,
+        to_loads: FloatArray,
+    ) -> None:
+        """Find the groups of ``resting`` contacts; ``chosen`` of their ``rows`` are constraints."""
+        owner = np.repeat(np.arange(len(resting)), [len(slips.rows_of([i])) for i in resting]).astype(int)
+        others = [i for i in range(len(rows)) if i not in chosen]
         links = np.zeros((len(resting), len(resting)))
         for i, shares in zip(others, by_chosen, strict=True):
-            links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares)]]] = 1.0
-        alone = not others and not any(isinstance(contacts[i], PlanarContact) for i in resting)
-        if alone:
-            self.alone = list(resting)
-        count, of_group = (
-            (0, np.zeros(len(resting))) if alone else connected_components(links, directed=False)
-        )
+            links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares).tolist()]]] = 1.0
+        count, of_group = connected_components(links, directed=False)
         of_first, of_rest = of_group[owner[chosen]], of_group[owner[others]]
         for number in range(count):
             own, first, rest = (np.flatnonzero(group == number) for group in (of_group, of_first, of_rest))
@@ -152,7 +177,7 @@ class Resting:
             if not len(rest) and not isinstance(members[0], PlanarContact):
                 self.alone.append(resting[int(own[0])])
                 continue
-            order = [chosen[k] for k in first] + [others[k] for k in rest]
+            order = [chosen[k] for k in first.tolist()] + [others[k] for k in rest.tolist()]
             blocks = [np.array([order.index(i) for i in np.flatnonzero(owner == k).tolist()]) for k in own]
             self.groups.append(
                 Group(
@@ -168,12 +193,6 @@ class Resting:
                 contact.stick.holds = partial(self.groups[-1].forces_of, i)
                 if isinstance(contact.stick, MeshLaw):
                     contact.stick.shifts = partial(self.groups[-1].load_of, contact.stick)
-        self.alone_places = places[0, [slips.sets.blocks[i].start for i in self.alone]]
-        for i, place in zip(self.alone, self.alone_places, strict=True):
-            stick = contacts[i].stick
-            stick.holds = partial(self._force_at, int(place))
-            if isinstance(stick, MeshLaw):
-                stick.shifts = None
 
     def _force_at(self, place: int) -> FloatArray:
         return -np.asarray(self._data.GetAECoordinates()[place : place + 1])
@@ -188,29 +207,30 @@ class Resting:
 
 
 class Line:
-    """Margins of contacts with constant limits that share no load: the least of two lines in the model's unknowns."""
+    """Conditions in the model's unknowns for contacts with constant limits that share no load to keep their modes."""
 
     def __init__(
         self, rows: FloatArray, directions: FloatArray, resting: Resting, limits: FloatArray, data: Any
     ) -> None:
-        count, size = rows.shape
-        slopes = np.zeros((2, count, size + data.AEsize()))
-        slopes[:, :, :size], self._constants = (
-            directions[:, None] * rows,
-            np.tile(1.0 - np.abs(directions), (2, 1)),
-        )
-        alone, places = resting.alone, size + resting.alone_places
+        slides, alone = np.flatnonzero(directions), resting.alone
+        size, count, first = rows.shape[1], len(alone), len(slides)
+        unknowns = size + data.AEsize()
+        self._slopes = slopes = np.zeros((first + 2 * count, unknowns + 1))
+        slopes[:first, :size] = directions[slides, None] * rows[slides]
         largest = limits[alone].max(axis=1)
-        for side, sign in enumerate((1.0, -1.0)):
-            self._constants[side, alone] = limits[alone, 1 - side] / largest
-            slopes[side, alone, places] = sign / largest
-        self._slopes = slopes
+        for i, sign in enumerate((1.0, -1.0)):
+            own = np.arange(first + i * count, first + (i + 1) * count)
+            slopes[own, size + resting.alone_places] = sign
+            slopes[own, unknowns] = limits[alone, 1 - i] - NEAR * largest
+        self._unknowns, self._size, self._data = np.ones(unknowns + 1), size, data
 
-    def margins(self, data: Any) -> FloatArray:
-        """Return the present margins, shape (contacts,)."""
-        velocities, forces = data.GetODE2Coordinates_t(CURRENT, False), data.GetAECoordinates(CURRENT, False)
-        both = self._constants + self._slopes @ np.concatenate((velocities, forces))
-        return np.asarray(np.minimum(both[0], both[1]))
+    def holds(self) -> bool:
+        """Return whether all contacts clearly keep their modes at the present state."""
+        unknowns, size = self._unknowns, self._size
+        unknowns[:size] = self._data.GetODE2Coordinates_t(CURRENT, False)
+        unknowns[size:-1] = self._data.GetAECoordinates(CURRENT, False)
+        unused = self._slopes.dot(unknowns)
+        return bool(unused[unused.argmin()] >= 0.0)
 
 
 def least_maximum(

@@ -31,8 +31,7 @@ GROWTH = 2.0
 class SlidingSteps:
     """Choice of the next step, at most ``step`` (s), while contacts slide in the plane.
 
-    A contact ``rests`` at the end of the last step, or ``starts`` to slide. The run ``pauses`` then, or if the next
-    step must have another size.
+    A contact ``rests`` at the end of the last step.
     """
 
     def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:
@@ -40,7 +39,7 @@ class SlidingSteps:
         self._by_motion = self._growing = math.inf
         self._rate = 0.0
         self._directions: dict[PlanarContact, tuple[float, float, float]] = {}
-        self.starts = self.pauses = self.rests = False
+        self.rests = False
 
     @property
     def longest(self) -> float:
@@ -72,7 +71,6 @@ class SlidingSteps:
             return False
         self._growing = GROWTH * max(step, self._growing) if self._growing < self._step else math.inf
         self._by_motion, self._rate = min(self._by_motion, fits), rate
-        self.pauses = self.starts or self.rests or self.longest < self._step
         return True
 
     def survey(self) -> None:

@@ -86,7 +86,7 @@ class StickingContact:
     def enter(self, mbs: Any, mode: Mode) -> None:
         """Switch to a mode, without its locks."""
         before, self.stick.mode, self.stick.entered = self.stick.entered, mode, mode
-        if before != mode and (forces := self.stick.constant_forces) is not None:
+        if before is not mode and (forces := self.stick.constant_forces) is not None:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
@@ -117,7 +117,7 @@ class StickingContact:
 
     def sliding_mode(self, slip: FloatArray) -> Mode:
         """Return the mode of a contact with a slip along its locks."""
-        return Mode(int(np.sign(slip[0])))
+        return Mode.FORWARD if slip[0] > 0.0 else Mode.BACKWARD if slip[0] < 0.0 else Mode.LOCKED
 
     @property
     def law(self) -> Law | None:

@@ -1,12 +1,13 @@
 """Runs of models whose contacts stick exactly: from one change of mode to the next.
 
-Between two changes the equations are smooth. A step that passes a change is repeated to end there, and
-``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
+Between two changes the equations are smooth. A step that passes a change is taken back and repeated to end there, and
+``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane. One run of
+Exudyn's solver contains all of these steps, because each start of a solver costs as much as several steps.
 """
 
 import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import nullcontext
 from typing import Any
 
@@ -15,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import Mode
+from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.repeated_steps import user_function
-from exudyn_models.solver.starting_rates import starting_rates
+from exudyn_models.solver.starting_rates import renew_rates
 from exudyn_models.solver.stick.mode_choice import MOST_CHANGES, ModeChoice
-from exudyn_models.solver.stick.sliding_steps import ON_GRID, SlidingSteps
+from exudyn_models.solver.stick.sliding_steps import APPROACH, ON_GRID, SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.sticking_contacts import ModeChange, PlanarContact, StickingContact
 from reference_model.systems import FloatArray
@@ -27,8 +29,8 @@ from reference_model.trajectory import SimulationError
 LOCATED = 1e-12
 """Resolution of the time of a change, as a share of a step."""
 
-SOON = 1e-5
-"""Largest difference between the roots of a line and a parabola, as a share of a step; the second is closer."""
+SOON = 1e-7
+"""Largest difference between the time of a change and the end of the step to it, as a share of a step."""
 
 SMALL = 1e-3
 """Largest margin near a change, relative to the margins of the step; margins that jump are larger."""
@@ -45,9 +47,16 @@ Constraint forces, which decide about releases, contain errors of velocities div
 ITERATIONS = 200
 """Smallest limit of Newton's iterations; loads that depend on forces need many, because the Jacobian omits them."""
 
+BEYOND = 1e-9
+"""Time in s from the end of a run to that of Exudyn, which would end 1e-10 s early."""
+
+START = exu.ConfigurationType.StartOfStep
 
 _Point = tuple[float, FloatArray]
 """A time in s, and the margins at this time."""
+
+_Steps = Generator[float, float, Any]
+"""Requests steps to times in s, and receives the times where they end, which are earlier if Newton's method fails."""
 
 
 def run_switching(
@@ -61,57 +70,43 @@ def run_switching(
 
     Raises ``SimulationError`` if the modes change without end at one time.
     """
-    data, initial = mbs.systemData, exu.ConfigurationType.Initial
-    state = data.GetSystemState(initial)
     run = _Run(mbs, copy.copy(settings), contacts)
-    try:
-        run.run(before)
-    finally:
-        if not update_initial_values:
-            data.SetSystemState(state, initial)
+    run.run(before, update_initial_values)
     return run.changes
 
 
 class _Run:
     def __init__(self, mbs: Any, settings: Any, contacts: list[StickingContact]) -> None:
-        self._mbs, self._settings, self._contacts = mbs, settings, contacts
+        self._mbs, self._data, self._settings, self._contacts = mbs, mbs.systemData, settings, contacts
         self._options = options = settings.timeIntegration
         self._start, self._end, self._steps = options.startTime, options.endTime, options.numberOfSteps
         self._step = (self._end - self._start) / self._steps
-        self._sensors = _SensorRows(settings.solution.sensors, self._start, self._step)
-        self._writes_file = settings.solution.file.write
-        self._reached, self._stopped, self._begun = self._start, False, False
+        outputs = settings.solution
+        wanted = [kind for kind in (_Rows, _FileRows) if kind.chosen(outputs)]
+        self._rows = [kind(outputs, self._start, self._step) for kind in wanted]
+        self._reached = self._target = self._start
+        self._size, self._ends = 0.0, False
         self._announced, self._settled = -math.inf, list[float]()
         self._ended_at_once = -math.inf
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        self._accelerations = np.empty(0)
         self._slides = SlidingSteps(mbs, self._planar, self._step)
         self._modes = ModeChoice(mbs, self._start, contacts, self._slides, self._step)
-        self._look: Callable[[float], bool] = lambda t: True
+        self._solver: Any = None
+        self._own: Callable[[Any, float], bool] = lambda mbs, t: True
         self.changes: list[ModeChange] = []
 
-    def run(self, before: Sequence[Mode]) -> None:
-        """Run to the end of the settings and leave it as the initial values."""
-        mbs = self._mbs
+    def run(self, before: Sequence[Mode], update_initial_values: bool) -> None:
+        """Run to the end of the settings."""
+        mbs, options = self._mbs, self._options
         calls_before = bool(self._planar) or bool(mbs.GetPreStepUserFunction())
+        self._choose_accuracy()
+        options.endTime = self._end + self._step + BEYOND
+        steps = self._motion(before)
         with (
             user_function(mbs, "PreStep", self._before_step) if calls_before else nullcontext(),
-            user_function(mbs, "PostStep", self._after_step),
+            user_function(mbs, "PostStep", lambda own: self._after_step(own, steps)),
         ):
-            self._choose_accuracy()
-            self._modes.begin(self._reached)
-            self._modes.settle(self._reached)
-            self._note(before)
-            while self._reached < self._end - ON_GRID * self._step and not self._stopped:
-                passed = self._go_on()
-                if passed is not None or self._slides.rests:
-                    modes = [contact.stick.visible_mode for contact in self._contacts]
-                    if passed is not None:
-                        self._land(*passed)
-                    else:
-                        self._stop()
-                    self._modes.settle(self._reached)
-                    self._note(modes)
+            mbs.SolveDynamic(self._settings, SOLVER, update_initial_values)
 
     def _choose_accuracy(self) -> None:
         """Change settings of Newton's method as friction requires."""
@@ -130,107 +125,125 @@ class _Run:
         def prepare(mbs: Any, t: float) -> bool:
             for contact in self._planar:
                 contact.start_step(mbs)
-            if t <= self._announced:  # a shorter step replaces a step that passed a change
+            if t <= self._announced + ON_GRID * self._step:  # this step replaces one that passed a change
                 return True
             self._announced = t
             return own(mbs, t)
 
         return prepare
 
-    def _after_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
+    def _after_step(self, own: Callable[[Any, float], bool], steps: _Steps) -> Callable[[Any, float], bool]:
+        self._own = own
+
         def look(mbs: Any, t: float) -> bool:
-            if not self._look(t):
-                return False
-            if t <= self._reached and self._begun:  # Exudyn also calls it at the start of each part
-                return True
-            self._reached, self._begun = t, True
-            self._stopped = not own(mbs, t)
-            return not self._stopped and not self._slides.pauses
+            begins = self._solver is None
+            if begins:
+                self._solver = mbs.sys["dynamicSolver"]
+            elif self._target - t > ON_GRID * self._size:
+                self._size = 0.0  # Newton's method failed, and Exudyn chose a shorter step
+            try:
+                self._aim(next(steps) if begins else steps.send(t))
+                goes_on = True
+            except StopIteration:
+                goes_on = False
+            for rows in self._rows:  # Exudyn writes them after this function
+                rows.switch(self._solver)
+            return goes_on
 
         return look
 
-    def _part(
-        self,
-        end: float,
-        steps: int,
-        look: Callable[[float], bool],
-        *,
-        write: bool,
-        keep: bool,
-    ) -> None:
-        """Run to ``end`` (s); ``write`` sensors and files, ``keep`` the end."""
-        if end <= self._reached:
+    def _aim(self, t: float) -> None:
+        """Let the next step end at the time t (s)."""
+        if t <= self._reached:
             raise SimulationError(
                 f"steps that resolve how contacts slide fell to zero at t = {self._reached:.9g} s: use smaller "
                 "steps, or give the contacts a regularisation"
             )
-        options, solution = self._options, self._settings.solution
-        options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
-        self._sensors.switch(write)
-        solution.file.write = write and self._writes_file
+        self._target, step = t, t - self._reached
+        if abs(step - self._size) > LOCATED * step:
+            it, self._size = self._solver.it, step
+            it.currentStepSize = it.maxStepSize = step
+            self._renew_jacobian()
+            if not self._options.adaptiveStep:  # Exudyn counts steps of one size then
+                it.adaptiveStep, it.minStepSize = True, step
         if self._planar:
-            small = (
-                any(contact.free_to_slide for contact in self._planar) and self._slides.longest < self._step
-            )
-            options.newton.relativeTolerance = self._tolerances[not small]
+            small = any(one.free_to_slide for one in self._planar) and self._slides.longest < self._step
+            self._solver.newton.relativeTolerance = self._tolerances[not small]
             # The direction of friction turns too fast for an old Jacobian.
-            options.newton.useModifiedNewton = not any(one.stick.slides for one in self._planar)
-        self._look = look
-        with starting_rates(self._mbs, self._reached):
-            self._mbs.SolveDynamic(self._settings, SOLVER, keep)
-        if write:
-            solution.file.append = solution.sensors.append = True
+            self._solver.newton.useModifiedNewton = not any(one.stick.slides for one in self._planar)
 
-    def _go_on(self) -> tuple[float, Sequence[FloatArray]] | None:
-        """Run to the end, or to the next multiple of the step if the last part ended between two.
+    def _renew_jacobian(self) -> None:
+        self._solver.conv.jacobianUpdateRequested = True
 
-        Return None, or the end of a step that passed a change, with the margins at both of its ends.
+    def _motion(self, before: Sequence[Mode]) -> _Steps:
+        """Generate all steps of the run."""
+        self._modes.begin(self._reached)
+        self._settle(before)
+        self._keep(self._reached)
+        while not self._ends:
+            passed = yield from self._go_on()
+            if passed is None and not self._slides.rests:
+                continue
+            modes = [contact.stick.visible_mode for contact in self._contacts]
+            yield from self._land(*passed) if passed is not None else self._stop()
+            self._settle(modes)
+
+    def _settle(self, before: Sequence[Mode]) -> None:
+        """Choose the modes after those ``before``."""
+        self._modes.settle(self._reached)
+        renew_rates(self._mbs, self._modes.solver)
+        self._renew_jacobian()
+        self._note(before)
+        for rows in self._rows:
+            rows.note(self._reached, True)
+
+    def _keep(self, t: float) -> None:
+        """Accept a step to the time t (s)."""
+        if ends := t >= self._end - ON_GRID * self._step:
+            t = self._end  # steps add up to it only within rounding errors
+            self._data.SetTime(t)
+        self._reached = t
+        self._ends = not self._own(self._mbs, t) or ends
+        for rows in self._rows:
+            rows.note(t, self._ends)
+
+    def _go_on(self) -> _Steps:
+        """Step to the end of the run, or until contacts in the plane rest; return None.
+
+        If a step passes a change, take it back, and return its end and the margins at both of its ends.
         """
-        data, start = self._mbs.systemData, self._reached
-        self._modes.take_back(start)
-        whole = (start - self._start) / self._step
-        on_grid = abs(whole - round(whole)) < ON_GRID
-        done = round(whole) if on_grid else math.floor(whole)
-        end = self._end if on_grid or done + 1 == self._steps else self._start + (done + 1) * self._step
-        steps = self._steps - done if on_grid else 1
-        if (longest := self._slides.longest) < self._step:
-            end, steps = min(end, start + longest), 1
-        self._sensors.is_due(start)  # the part begins with a row
-        margins, passed = self._modes.margins(start), None
-        self._slides.pauses = self._slides.rests = False
-
-        def look(t: float) -> bool:
-            nonlocal margins, passed
-            if t == start:
-                data.SetAECoordinates(
-                    data.GetAECoordinates(exu.ConfigurationType.Initial)
-                )  # sensors show them
-                self._accelerations = data.GetODE2Coordinates_tt()
-                return True
-            now = self._modes.margins(t)
-            if now.min() < 0.0:
-                passed = t, (margins, now)
-            if passed is not None or not self._slides.resolves(t - self._reached):
+        longest = math.inf
+        while not self._ends:
+            start = self._reached
+            self._modes.take_back(start)
+            done = math.floor((start - self._start) / self._step + ON_GRID) + 1
+            end = self._end if done >= self._steps else self._start + done * self._step
+            end = min(end, start + longest, start + self._slides.longest)
+            t = yield end
+            longest = 2.0 * (t - start if end - t > ON_GRID * self._step else longest)
+            if not self._modes.hold():
+                now = self._modes.margins(t)
+                if now.min() < 0.0:
+                    self._take_back()
+                    return t, (self._modes.margins(start), now)
+            if not self._slides.resolves(t - start):
                 self._take_back()
-                return False
-            margins = now
-            self._accelerations = data.GetODE2Coordinates_tt()
-            self._sensors.switch(self._sensors.is_due(t) or t >= self._end - ON_GRID * self._step)
-            return True
-
-        self._part(end, steps, look, write=True, keep=True)
-        self._settings.solution.file.writeInitialValues = passed is not None  # also read by sensors
-        return passed
+                continue
+            self._keep(t)
+            if self._slides.rests:
+                break
+        return None
 
     def _take_back(self) -> None:
-        data = self._mbs.systemData
-        state = data.GetSystemState(exu.ConfigurationType.StartOfStep)
-        data.SetSystemState(state, exu.ConfigurationType.Current)
-        data.SetODE2Coordinates_tt(self._accelerations)
+        data = self._data
+        data.SetSystemState(data.GetSystemState(START), CURRENT)
+        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt(START))
+        if data.ODE1Size():
+            data.SetODE1Coordinates_t(data.GetODE1Coordinates_t(START))
         data.SetTime(self._reached)
-        self._sensors.switch(False)
+        self._solver.it.currentTime, self._size = self._reached, 0.0
 
-    def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
+    def _land(self, high: float, margins: Sequence[FloatArray]) -> _Steps:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
         Inverse interpolation through the latest points finds it, or the Illinois method within the interval (Dowell &
@@ -241,22 +254,29 @@ class _Run:
         least = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
         side, large = 0, np.abs(below) + np.abs(above)
         # A slip that has just begun is zero at the start of the step, and may turn back within the step.
-        start, turns_back = low, self._ended_at_once == low
+        start, turns_back, at_once = low, self._ended_at_once == low, False
+        t, now = low, above
         for tried in range(MOST_CHANGES):
             ended = below < 0.0
             within = [(low, np.maximum(above, 0.0)), (high, below)]
-            trials = [_roots(pair, ended) for pair in (points[-3:], points[-2:], within)]
+            trials = (_roots(some, ended) for some in (points[-3:], points[-2:], within))
             roots = next((root for root in trials if low < root.min() < high), np.where(ended, low, np.inf))
             found = float(roots.min())
-            bisects = tried % 4 == 3 or (turns_back and low == start)
-            t = (low + high) / 2.0 if bisects else found
-            at_once = tried == 0 and t - low <= least
-            t = min(max(t, low) + least / 2.0, high - least / 2.0)
-            is_close = max(abs(t - found), abs(t - trials[1].min())) <= SOON * self._step
             is_small = (np.abs(points[-1][1]) <= SMALL * large)[roots.argmin()]
-            if (tried and is_close and is_small) or at_once or high - low <= least:
+            if tried and is_small and abs(found - t) <= SOON * self._step:
                 break
-            self._step_to(t, keep=False)
+            if tried:
+                self._take_back()
+            if high - low <= least:  # a margin jumps here
+                t = yield high + 2.0 * np.spacing(abs(high))  # not before it by rounding
+                now = self._modes.margins(t)
+                break
+            bisects = tried % 4 == 3 or (turns_back and low == start)
+            aim = (low + high) / 2.0 if bisects else found
+            at_once = tried == 0 and aim - low <= least
+            if at_once:
+                break
+            t = yield min(max(aim, low) + least / 2.0, high - least / 2.0)
             now = self._modes.margins(t)
             points.append((t, now))
             if (now < 0.0).any():
@@ -265,20 +285,19 @@ class _Run:
                 low, above, below, side = t, now, below if side >= 0 else below / 2.0, -1
         self._ended_at_once = low if at_once else -math.inf
         if not at_once:
-            t = high if high - low <= least else t
-            self._step_to(t)
-        now = self._modes.margins(self._reached)
-        ends = (now < 0.0) | (roots - t <= least)
-        self._modes.end([self._contacts[i] for i in np.flatnonzero(ends)])
+            self._keep(t)
+        ends = np.flatnonzero((now < 0.0) | (roots - t <= SOON * self._step)).tolist()
+        self._modes.end([self._contacts[i] for i in ends])
 
-    def _stop(self) -> None:
+    def _stop(self) -> _Steps:
         """Step under constant friction until contacts in the plane rest.
 
         A slip that a prescribed motion reverses passes through zero, until it has a direction again.
         """
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
-        stopping = [(contact, motion) for contact, motion in motions if self._slides.stops(contact, motion)]
-        time = min(motion.remaining for _, motion in stopping)
+        time = min(motion.remaining for contact, motion in motions if self._slides.stops(contact, motion))
+        # Others stop too if their slip would not resolve this step.
+        stopping = [(contact, motion) for contact, motion in motions if APPROACH * motion.remaining <= time]
         self._modes.survey(self._reached)
         passing = [motion for contact, motion in stopping if contact.passes(motion)]
         shortest = PlanarContact.resolution * self._step
@@ -286,19 +305,16 @@ class _Run:
             (max(shortest, 2.0 * RESOLVED * one.largest_term / one.rate_potential) for one in passing),
             default=0.0,
         )
-        if self._reached + time > self._reached:
+        end = self._reached + time
+        for contact, _ in stopping:
+            contact.planar.frozen = True
+        try:
+            while self._reached < end:
+                self._keep((yield end))
+        finally:
             for contact, _ in stopping:
-                contact.planar.frozen = True
-            try:
-                self._step_to(self._reached + time)
-            finally:
-                for contact, _ in stopping:
-                    contact.planar.frozen = False
+                contact.planar.frozen = False
         self._modes.end(contact for contact, _ in stopping)
-
-    def _step_to(self, t: float, *, keep: bool = True) -> None:
-        start = self._reached
-        self._part(t, 1, lambda time: keep or time == start, write=False, keep=keep)
 
     def _note(self, before: Sequence[Mode]) -> None:
         """Record the changes of mode; raise ``SimulationError`` if they do not end."""
@@ -314,34 +330,59 @@ class _Run:
             )
 
 
-def _roots(points: Sequence[_Point], ended: NDArray[Any]) -> NDArray[Any]:
+def _roots(points: Sequence[_Point], ended: NDArray[Any]) -> FloatArray:
     """Return the times (s) where margins vanish, by inverse interpolation; infinite unless the mode has ``ended``."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        times = sum(
-            t * np.prod([other / (other - margins) for _, other in points if other is not margins], axis=0)
-            for t, margins in points
-        )
-    return np.where(ended, times, np.inf)
+    times = np.full(len(ended), np.inf)
+    for i in np.flatnonzero(ended).tolist():
+        pairs = [(t, float(margins[i])) for t, margins in points]
+        if len({margin for _, margin in pairs}) == len(pairs):
+            times[i] = sum(
+                t * math.prod(other / (other - margin) for _, other in pairs if other != margin)
+                for t, margin in pairs
+            )
+        else:
+            times[i] = math.nan
+    return times
 
 
-class _SensorRows:
-    """Switches sensors on only for steps that need a row, because each part of a run would restart the period."""
+class _Rows:
+    """Rows of all sensors: one a period, and one at each change of mode."""
 
-    def __init__(self, settings: Any, start: float, step: float) -> None:
-        self._settings, self._next, self._step = settings, start, step
-        self._wanted = self._on = settings.active
-        self._period, settings.writePeriod = settings.writePeriod, 0.0
+    def __init__(self, outputs: Any, start: float, step: float) -> None:
+        self._settings = settings = self.chosen(outputs)
+        self._next, self._step, self._period = start, step, max(settings.writePeriod, step)
+        settings.writePeriod, self._due, self._on = 0.0, False, True
 
-    def switch(self, on: bool) -> None:
-        """Switch rows on or off from the next step on, if the user wants any."""
-        on = self._wanted and on
-        if on != self._on:
-            self._settings.active = self._on = on
+    @staticmethod
+    def chosen(outputs: Any) -> Any:
+        """Return the settings of the rows, or None without rows."""
+        return outputs.sensors if outputs.sensors.active else None
 
-    def is_due(self, t: float) -> bool:
-        """Return whether a row is due at the time t (s); if so, advance to the next row."""
-        if t < self._next - ON_GRID * self._step:
-            return False
-        period = max(self._period, self._step)
-        self._next += period * (1 + math.floor((t - self._next) / period + ON_GRID))
-        return True
+    def note(self, t: float, always: bool) -> None:
+        """Note that the state at the time t (s) is one of the motion, with a row if one is due or ``always``."""
+        if t >= self._next - ON_GRID * self._step:
+            self._next += self._period * (1 + math.floor((t - self._next) / self._period + ON_GRID))
+            always = True
+        self._due |= always
+
+    def switch(self, solver: Any) -> None:
+        """Let the ``solver`` write a row of the present state, or not."""
+        if self._due != self._on:
+            self._on = self._due
+            self._write(solver)
+        self._due = False
+
+    def _write(self, solver: Any) -> None:
+        self._settings.active = self._on
+
+
+class _FileRows(_Rows):
+    """The same of the solution file."""
+
+    @staticmethod
+    def chosen(outputs: Any) -> Any:
+        """Return the settings of the rows, or None without rows."""
+        return outputs.file if outputs.file.write else None
+
+    def _write(self, solver: Any) -> None:
+        solver.output.writeToSolutionFile = self._on
