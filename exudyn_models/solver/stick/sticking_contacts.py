@@ -311,6 +311,10 @@ class PlanarContact(StickingContact):
             return 1.0
         return 1.0 - self.motion(mbs).potential / STILL
 
+    def goes_on(self, mbs: Any, t: float) -> bool:
+        """Return whether the contact neither opens nor closes, and no slip begins or vanishes."""
+        return (self.strength(t)[0] == 0.0) is (self.mode is Mode.OPEN) and self.margin(mbs) == 1.0
+
     def sliding_mode(self, slip: FloatArray) -> Mode:
         """Return the mode of a contact with a slip."""
         sideways = math.hypot(slip[0], slip[1])

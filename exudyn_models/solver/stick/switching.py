@@ -221,7 +221,7 @@ class _Run:
             end = min(end, start + longest, start + self._slides.longest)
             t = yield end
             longest = 2.0 * (t - start if end - t > ON_GRID * self._step else longest)
-            if not self._modes.hold():
+            if not self._modes.hold(t):
                 now = self._modes.margins(t)
                 if now.min() < 0.0:
                     self._take_back()
