@@ -94,7 +94,7 @@ class Sets:
         return self._smooth_forces(to_rates, rates, limits)
 
     def _clearly_contain(self, forces: FloatArray, limits: FloatArray) -> bool:
-        """Return whether intervals, and hulls of forces alone and moments alone in limit surfaces, contain ``forces``."""
+        """Return whether ``forces`` lie in intervals, or in the hull of forces alone and moments alone in the plane."""
         own = [forces[rows].tolist() for rows in self.blocks]
         return all(
             math.hypot(*force[:2]) + abs(sum(force[2:])) < forward if law else -forward < force[0] < backward

@@ -5,7 +5,6 @@ Between two changes the equations are smooth. A step that passes a change is tak
 Exudyn's solver contains all of these steps, because each start of a solver costs as much as several steps.
 """
 
-import copy
 import math
 from collections.abc import Callable, Generator, Sequence
 from contextlib import nullcontext
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.items import CURRENT
-from exudyn_models.solver.repeated_steps import user_function
+from exudyn_models.solver.repeated_steps import changed, user_function
 from exudyn_models.solver.starting_rates import renew_rates
 from exudyn_models.solver.stick.mode_choice import MOST_CHANGES, ModeChoice
 from exudyn_models.solver.stick.sliding_steps import APPROACH, ON_GRID, SlidingSteps
@@ -70,7 +69,7 @@ def run_switching(
 
     Raises ``SimulationError`` if the modes change without end at one time.
     """
-    run = _Run(mbs, copy.copy(settings), contacts)
+    run = _Run(mbs, settings, contacts)
     run.run(before, update_initial_values)
     return run.changes
 
@@ -97,29 +96,31 @@ class _Run:
 
     def run(self, before: Sequence[Mode], update_initial_values: bool) -> None:
         """Run to the end of the settings."""
-        mbs, options = self._mbs, self._options
+        mbs, options, outputs = self._mbs, self._options, self._settings.solution
         calls_before = bool(self._planar) or bool(mbs.GetPreStepUserFunction())
-        self._choose_accuracy()
-        options.endTime = self._end + self._step + BEYOND
         steps = self._motion(before)
         with (
+            changed(options, endTime=self._end + self._step + BEYOND),
+            # ``dynamics`` finds better accelerations.
+            changed(options.generalizedAlpha, computeInitialAccelerations=False),
+            changed(options.newton, **self._accuracy()),
+            changed(outputs.sensors, writePeriod=0.0, active=outputs.sensors.active),
+            changed(outputs.file, writePeriod=0.0),
             user_function(mbs, "PreStep", self._before_step) if calls_before else nullcontext(),
             user_function(mbs, "PostStep", lambda own: self._after_step(own, steps)),
         ):
             mbs.SolveDynamic(self._settings, SOLVER, update_initial_values)
 
-    def _choose_accuracy(self) -> None:
-        """Change settings of Newton's method as friction requires."""
-        self._options.generalizedAlpha.computeInitialAccelerations = (
-            False  # ``dynamics`` finds better accelerations
-        )
+    def _accuracy(self) -> dict[str, Any]:
+        """Return settings of Newton's method that friction requires."""
         newton = self._options.newton
-        newton.maxIterations = max(newton.maxIterations, ITERATIONS)
+        values: dict[str, Any] = {"maxIterations": max(newton.maxIterations, ITERATIONS)}
         if self._planar:
-            newton.modifiedNewtonJacUpdatePerStep = True
             self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
             friction = max(contact.strength(self._start)[0] for contact in self._planar)
-            newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
+            values["absoluteTolerance"] = min(newton.absoluteTolerance, FORCES * friction)
+            values["modifiedNewtonJacUpdatePerStep"] = True
+        return values
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
         def prepare(mbs: Any, t: float) -> bool:
@@ -351,7 +352,7 @@ class _Rows:
     def __init__(self, outputs: Any, start: float, step: float) -> None:
         self._settings = settings = self.chosen(outputs)
         self._next, self._step, self._period = start, step, max(settings.writePeriod, step)
-        settings.writePeriod, self._due, self._on = 0.0, False, True
+        self._due, self._on = False, True
 
     @staticmethod
     def chosen(outputs: Any) -> Any:
