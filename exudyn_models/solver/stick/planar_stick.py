@@ -11,7 +11,7 @@ of the load, so the contact holds if any share lies within the limit surface of 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from exudyn_models.solver.stick.slip_motion import (
     line_from,
     linear_force,
     linear_jacobian,
-    potential_terms,
+    potential_along_locks,
     resisted_slip,
     slip_motion,
     unit_friction,
@@ -138,11 +138,8 @@ class PlanarStick(AxialStick):
 
     def potential_along_locks(self, slip: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Return P (m/s) of a slip along the directions of the locks, shape (k,), its gradient and curvature."""
-        whole, count = np.zeros(3), len(slip)
-        whole[:count] = slip / self.scales
-        potential, gradient, curvature = potential_terms(whole, self.factors.geometry)
-        scales = self.scales
-        return potential, gradient[:count] / scales, curvature[:count, :count] / np.outer(scales, scales)
+        found = potential_along_locks(slip, self.mean_radius or 1.0, self.factors.geometry)
+        return cast(tuple[float, FloatArray, FloatArray], found)
 
     def potential_of(self, slip: FloatArray) -> float:
         """Return P in m/s."""

@@ -218,6 +218,22 @@ def _potential_terms(slip: FloatArray, contact: Contact) -> tuple[float, FloatAr
 
 
 @compiled
+def _potential_along_locks(
+    slip: FloatArray, rim: float, contact: Contact
+) -> tuple[float, FloatArray, FloatArray]:
+    """Return the same for a slip whose third component, if any, is the slip of the rim (m/s)."""
+    count, whole = len(slip), np.zeros(3)
+    for i in range(count):
+        whole[i] = slip[i] if i < 2 else slip[i] / rim
+    potential, gradient, curvature = _potential_terms(whole, contact)
+    gradient[2] /= rim
+    for i in range(3):
+        curvature[i, 2] /= rim
+        curvature[2, i] /= rim
+    return potential, gradient[:count], curvature[:count, :count]
+
+
+@compiled
 def _resisted_slip(
     load: FloatArray, columns: FloatArray, start: FloatArray, contact: Contact
 ) -> tuple[float, FloatArray]:
@@ -317,5 +333,5 @@ def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 slip_motion, line_from = KeptOnDisk(_slip_motion), KeptOnDisk(_line_from)
 unit_friction, resisted_slip = KeptOnDisk(_unit_friction), KeptOnDisk(_resisted_slip)
-potential_terms = KeptOnDisk(_potential_terms)
+potential_along_locks = KeptOnDisk(_potential_along_locks)
 rate_of_rotation_vector = KeptOnDisk(_rate_of_rotation_vector)

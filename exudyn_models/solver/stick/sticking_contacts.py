@@ -317,8 +317,9 @@ class PlanarContact(StickingContact):
 
     def sliding_mode(self, slip: FloatArray) -> Mode:
         """Return the mode of a contact with a slip."""
-        sideways = math.hypot(slip[0], slip[1])
-        rim = slip[2] * (self.planar.mean_radius or 1.0) if len(slip) == 3 else 0.0
+        x, y, *spin = slip.tolist()
+        sideways = math.hypot(x, y)
+        rim = spin[0] * (self.planar.mean_radius or 1.0) if spin else 0.0
         return Mode.BACKWARD if rim < -NEGLIGIBLE * sideways else Mode.FORWARD  # spin may be a rounding error
 
 

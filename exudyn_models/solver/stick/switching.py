@@ -119,7 +119,8 @@ class _Run:
             self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
             friction = max(contact.strength(self._start)[0] for contact in self._planar)
             values["absoluteTolerance"] = min(newton.absoluteTolerance, FORCES * friction)
-            values["modifiedNewtonJacUpdatePerStep"] = True
+            # The direction of friction turns too fast for the Jacobian of an earlier step.
+            values["useModifiedNewton"] = values["modifiedNewtonJacUpdatePerStep"] = True
         return values
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
@@ -170,8 +171,6 @@ class _Run:
         if self._planar:
             small = any(one.free_to_slide for one in self._planar) and self._slides.longest < self._step
             self._solver.newton.relativeTolerance = self._tolerances[not small]
-            # The direction of friction turns too fast for an old Jacobian.
-            self._solver.newton.useModifiedNewton = not any(one.stick.slides for one in self._planar)
 
     def _renew_jacobian(self) -> None:
         self._solver.conv.jacobianUpdateRequested = True
