@@ -212,7 +212,7 @@ class _Run:
 
         If a step passes a change, take it back, and return its end and the margins at both of its ends.
         """
-        longest = math.inf
+        longest, recovery = math.inf, self._options.adaptiveStepRecoverySteps
         while not self._ends:
             start = self._reached
             self._modes.take_back(start)
@@ -220,7 +220,11 @@ class _Run:
             end = self._end if done >= self._steps else self._start + done * self._step
             end = min(end, start + longest, start + self._slides.longest)
             t = yield end
-            longest = 2.0 * (t - start if end - t > ON_GRID * self._step else longest)
+            recovery -= 1
+            if end - t > ON_GRID * self._step:  # Exudyn has shortened the step
+                longest, recovery = t - start, self._options.adaptiveStepRecoverySteps
+            elif recovery == 0:
+                longest, recovery = 2.0 * longest, self._options.adaptiveStepRecoverySteps
             if not self._modes.hold(t):
                 now = self._modes.margins(t)
                 if now.min() < 0.0:
@@ -268,7 +272,7 @@ class _Run:
             if tried:
                 self._take_back()
             if high - low <= least:  # a margin jumps here
-                t = yield high + 2.0 * np.spacing(abs(high))  # not before it by rounding
+                t = yield high
                 now = self._modes.margins(t)
                 break
             bisects = tried % 4 == 3 or (turns_back and low == start)

@@ -10,6 +10,8 @@ from free_bodies import ball, drive, new_model, rate_of, rotations, rotor, setti
 from free_bodies import changes_of as run
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
+from exudyn_models.solver.items import add_integrals
+from reference_model.trajectory import SimulationError
 
 SOLVERS = exu.DynamicSolverType
 IMPLICIT = [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha]
@@ -253,3 +255,82 @@ def test_a_brake_at_rest_whose_load_vanishes_for_a_while_opens_and_closes_then(p
     changes = run(mbs, 0.1, 0.01, SOLVERS.TrapezoidalIndex2)
     assert [change[2:] for change in changes] == [(0, 2), (2, 1), (1, 0)]
     assert [time for time, *_ in changes] == pytest.approx([start, end, 2.0 * end - start], abs=1e-9)
+
+
+def refused_steps(mbs, longest, recommended=0.0):
+    """Let Newton's method fail in long steps before 0.03 s; return ends (s) of accepted and of refused steps."""
+    start = exu.ConfigurationType.StartOfStep
+    ends, refused = [], []
+
+    def refuse(mbs, t):
+        if t < 0.03 and t - mbs.systemData.GetTime(start) > longest:
+            refused.append(t)
+            return [math.inf, recommended]
+        return [0.0, -1.0]
+
+    def note(mbs, t):
+        ends.append(t)
+        return True
+
+    mbs.SetPostNewtonUserFunction(refuse)
+    mbs.SetPostStepUserFunction(note)
+    return ends, refused
+
+
+@pytest.mark.parametrize(("longest", "recommended"), [(2e-4, 2e-4), (1e-4 / 3.0, 3e-5), (6e-4, 5e-4)])
+def test_steps_that_fail_are_shorter_for_a_while_and_a_change_between_them_is_exact(longest, recommended):
+    mbs, friction = braked(1.0, lambda t: 0.0)
+    ends, refused = refused_steps(mbs, longest, recommended)
+    stops = 1.0 * INERTIA / SLIDING
+    assert run(mbs, 0.05, 1e-3) == [(pytest.approx(stops, abs=1e-12), int(friction.item), 1, 0)]
+    sizes = np.diff(ends)
+    assert (sizes > 0.0).all()
+    assert sizes[np.array(ends[1:]) < 0.03].max() <= longest + 1e-12
+    assert len(refused) <= 0.15 * len(ends)
+    assert sizes[-3:] == pytest.approx(np.full(3, 1e-3), abs=1e-12)
+    assert ends[-1] == 0.05
+
+
+def test_a_step_that_may_not_be_shorter_ends_the_run():
+    mbs, _ = braked(1.0, lambda t: 0.0)
+    refused_steps(mbs, 2e-4, 2e-4)
+    settings = settings_of(0.05, 50)
+    settings.timeIntegration.adaptiveStep = False
+    with pytest.raises(SimulationError, match="TrapezoidalIndex2 failed 0 s after the start"):
+        solve_dynamic(mbs, settings, SOLVERS.TrapezoidalIndex2)
+
+
+def test_a_change_of_mode_takes_few_steps():
+    """One step passes it, two find it and one returns to the grid; the solver starts once."""
+    mbs, _ = braked(0.0, lambda t: 40.0 * math.sin(20.0 * t))
+    changes = run(mbs, 2.0, 1e-2)
+    assert len(changes) > 20
+    assert 200 < mbs.sys["dynamicSolver"].it.currentStepIndex <= 200 + 5 * len(changes)
+
+
+def test_first_order_coordinates_start_again_from_the_start_of_a_step_that_is_taken_back():
+    """Both integrators use the trapezoidal rule, so the integral of the speed is the angle."""
+    mbs, _ = braked(0.0, lambda t: 40.0 * math.sin(20.0 * t))
+    node = add_integrals(
+        mbs, lambda mbs, t, item, q: mbs.systemData.GetODE2Coordinates_t().tolist()[:1], [0.0]
+    )
+    assert len(run(mbs, 2.0, 1e-2)) > 20
+    assert mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates) == pytest.approx(angle(mbs), abs=1e-12)
+
+
+@pytest.mark.parametrize("end", [1e-9, 1e-12])
+def test_runs_shorter_than_the_time_that_exudyn_resolves_end_at_their_end(end):
+    mbs, _ = braked(2.0, lambda t: 0.0)
+    ends, _ = refused_steps(mbs, math.inf)
+    run(mbs, end, end / 10.0)
+    assert ends == pytest.approx(np.linspace(0.0, end, 11), rel=1e-9)
+    assert mbs.systemData.GetTime() == end
+
+
+def test_a_contact_opens_at_any_time_where_its_load_jumps_to_zero():
+    """Rounding errors of the time of a step must not leave it before the jump."""
+    for jumps in [0.01, *np.random.default_rng(0).uniform(0.0, 0.02, 20)]:
+        mbs = new_model()
+        law = BRAKE | {"normal_load": lambda time, jumps=jumps: 0.0 if time > jumps else 800.0}
+        add_ring_friction(mbs, None, rotor(mbs, INERTIA, 2.0), **law)
+        assert [change[2:] for change in run(mbs, 0.03, 1e-3)] == [(1, 2)]
