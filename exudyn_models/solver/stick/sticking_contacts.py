@@ -90,7 +90,9 @@ class StickingContact:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
-        """Let constraints hold these directions of slip."""
+        """Let constraints hold these directions of slip; in the plane, the last constraint holds all of them."""
+        if len(directions) == self.directions > 1:
+            directions = [self.directions]
         before = self.stick.held
         self.stick.held = tuple(i in directions for i in range(len(self.stick.locks)))
         if self.stick.held != before:
@@ -98,8 +100,10 @@ class StickingContact:
                 mbs.SetObjectParameter(lock, "activeConnector", holds)
 
     def force_places(self, data: Any) -> NDArray[Any]:
-        """Return the places of the forces along its locks among the constraint forces, twice, shape (2, k)."""
-        return np.array([[data.GetObjectLTGAE(lock)[0] for lock in self.stick.locks[: self.directions]]] * 2)
+        """Return the places of the forces of constraints for one direction each, and for all, shape (2, k)."""
+        places = [np.array(data.GetObjectLTGAE(lock)) for lock in self.stick.locks]
+        alone = np.concatenate(places[: self.directions])
+        return np.array([alone, places[self.directions] if self.directions > 1 else alone])
 
     def omit_user_functions(self, mbs: Any) -> None:
         """Let Exudyn evaluate constant moments itself."""
@@ -226,15 +230,6 @@ class PlanarContact(StickingContact):
             self.whole.called = calls
             mbs.SetObjectParameter(self.item, "forceUserFunction", self.whole.force if calls else 0)
             mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.whole.jacobian if calls else 0)
-
-    def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
-        """Let constraints hold these directions of slip; one holds all of them."""
-        super().lock(mbs, [self.directions] if len(directions) == self.directions else directions)
-
-    def force_places(self, data: Any) -> NDArray[Any]:
-        """Return the places of the forces along its locks, and of the constraint that holds all, shape (2, k)."""
-        together = data.GetObjectLTGAE(self.stick.locks[self.directions])
-        return np.array([super().force_places(data)[0], together], dtype=int)
 
     @property
     def free_to_slide(self) -> bool:
