@@ -5,13 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from exudyn_models.forces.any_pair import (
-    Parameters,
-    contact_of,
-    derivatives_on_nodes,
-    motion_of,
-    slip_of_nodes,
-)
+from exudyn_models.forces.any_pair import Parameters, contact_of, motion_of, slip_of_nodes
 from exudyn_models.forces.friction_laws import (
     Contact,
     derivatives_by_slip,
@@ -150,27 +144,23 @@ def linear_jacobian(
     parameters: Parameters, line: FloatArray, friction: float, slope: float, mbs: Any, t: Any, item: Any, q: Any,
     q_t: Any, position_factor: float, velocity_factor: float,
 ) -> FloatArray:  # fmt: skip
-    """Return the weighted sum of the derivatives of minus these forces, shape (n, n)."""
-    coordinates, velocities = motion_of(parameters, q, q_t)
-    kinds = contact_of(parameters)[1]
-    to_slip, _, turned, _ = slip_and_place(kinds, coordinates)
-    force = _on_line(line, friction, slope, slip_of_nodes(to_slip, velocities))
-    by_slip = np.zeros((3, 4))
+    """Return the weighted sum of the derivatives of minus these forces, shape (n, n).
+
+    Bodies turn too little in a step for the derivatives of J to matter.
+    """
+    coordinates, _ = motion_of(parameters, q, q_t)
+    to_slip = slip_and_place(contact_of(parameters)[1], coordinates)[0]
+    size, factor = len(coordinates), -velocity_factor * slope * friction
+    result, by_velocities = np.zeros((size, size)), np.zeros((3, size))
     for i in range(3):
         for j in range(3):
-            by_slip[i, j] = slope * friction * line[6 + 3 * i + j]
-    return derivatives_on_nodes(
-        kinds,
-        coordinates,
-        velocities,
-        -position_factor,
-        -velocity_factor,
-        to_slip,
-        turned,
-        force,
-        by_slip,
-        0.0,
-    )[0]
+            for k in range(size):
+                by_velocities[i, k] += factor * line[6 + 3 * i + j] * to_slip[j, k]
+    for i in range(3):
+        for k in range(size):
+            for j in range(size):
+                result[k, j] += to_slip[i, k] * by_velocities[i, j]
+    return result
 
 
 @compiled

@@ -276,7 +276,8 @@ class PlanarContact(StickingContact):
 
     def share_bound(self, forces: FloatArray, limit: float) -> float:
         """Return a bound of this share: the limit surface contains the hull of forces alone and moments alone."""
-        return (math.hypot(*forces[:2]) + abs(sum(forces[2:]))) / limit
+        x, y, *rim = forces.tolist()
+        return (math.hypot(x, y) + abs(sum(rim))) / limit
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion, and store its radius for the capacity in stick."""
