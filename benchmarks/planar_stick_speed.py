@@ -1,8 +1,8 @@
 """Measure the cost of exact stick between bodies that can slide sideways.
 
 Run ``python benchmarks/planar_stick_speed.py``. Each ratio compares a run with a ring contact to a run of the same
-model without it, the fastest of several of each. A swinging master drags a disc on springs, so the contact sticks and
-slides several times. ``--profile`` prints where the time goes.
+model without it, the fastest of several of each, by ``solve_dynamic`` and by Exudyn alone. A swinging master drags a
+disc on springs. ``--profile`` also prints where the time goes.
 """
 
 import cProfile
@@ -27,21 +27,18 @@ SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
 SWINGING = [0.2, 0.1, 0.5]  # m/s, m/s, rad/s
 RING = {"contact_radius": 0.1, "friction_coefficient": 0.4}
 
-
-def growing(time):
-    """Return a load in N that is a function of the time."""
-    return 30.0 + 12.0 * math.sin(9.0 * time)
-
-
-def steady(time):
-    """Return a load in N that makes the same motion costlier than a constant one by calls only."""
-    return 30.0
+LOADS = {  # N
+    "sticks and slides, constant load": 30.0,
+    "sticks and slides, load of time": lambda time: 30.0 + 12.0 * math.sin(9.0 * time),
+    "sticks, load of time": lambda time: 200.0 + 50.0 * math.sin(9.0 * time),
+    "slides and turns, load of time": lambda time: 1.0 + 0.4 * math.sin(9.0 * time),
+}
 
 
-def held(mbs, node, marker, stiffness, rotation):
-    """Hold a body on springs of a ``stiffness`` (N/m) and a ``rotation`` stiffness (N m/rad)."""
+def held(mbs, marker, stiffness):
+    """Hold a body on springs of this ``stiffness`` (N/m), and in N m/rad a hundredth of it."""
     ground = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(items.ObjectGround())))
-    springs = np.diag([stiffness] * 3 + [rotation] * 3)
+    springs = np.diag([stiffness] * 3 + [0.01 * stiffness] * 3)
     mbs.AddObject(
         items.ObjectConnectorRigidBodySpringDamper(
             markerNumbers=[ground, marker], stiffness=springs, damping=0.002 * springs
@@ -86,7 +83,7 @@ def model(body, load=None, **options):
     nodes = []
     for mass, stiffness, velocity in ((20.0, 8000.0, SWINGING), (2.0, 4000.0, [0.0] * 3)):
         node, marker = body(mbs, mass, 0.01 * mass, velocity)
-        held(mbs, node, marker, stiffness, 0.01 * stiffness)
+        held(mbs, marker, stiffness)
         nodes.append(node)
     if load is not None:
         add_ring_friction(mbs, *nodes, normal_load=load, **RING, **options)
@@ -94,7 +91,7 @@ def model(body, load=None, **options):
     return mbs
 
 
-def duration(body, load=None, **options):
+def duration(body, load=None, native=False, **options):
     """Return the shortest processor time of a run in s, and the mode changes."""
     best, changes = math.inf, []
     for _ in range(REPEATS):
@@ -104,7 +101,7 @@ def duration(body, load=None, **options):
         run = settings.timeIntegration
         run.endTime, run.numberOfSteps, run.verboseMode = END, STEPS, 0
         start = time.process_time()
-        if load is None:
+        if native:
             mbs.SolveDynamic(settings, SOLVER)
         else:
             changes = solve_dynamic(mbs, settings, SOLVER)
@@ -112,21 +109,24 @@ def duration(body, load=None, **options):
     return best, changes
 
 
+def show(case, found, changes, bare, native):
+    """Print times in s as ratios, and the modes that a contact has changed to."""
+    kinds = dict(Counter(change.after.name for change in changes))
+    print(f"  {case}: {found * 1e3:.1f} ms, ratios {found / bare:.1f} and {found / native:.1f} {kinds}")
+
+
 if __name__ == "__main__":
     exu.config.suppressWarnings = True
     for name, body in BODIES.items():
-        bare, _ = duration(body)
-        print(f"{name}: {bare * 1e3:.2f} ms without friction")
-        cases = {"constant load": 30.0, "load of time, constant": steady, "load of time": growing}
-        for case, load in cases.items():
-            exact, changes = duration(body, load)
-            kinds = Counter(int(change.after) for change in changes)
-            print([(round(c.time, 3), int(c.after)) for c in changes])
-            print(f"  {case}: {exact * 1e3:.1f} ms, ratio {exact / bare:.1f}, changes to {dict(kinds)}")
-        regular, _ = duration(body, growing, regularisation=1e-3)
-        print(f"  regularised: ratio {regular / bare:.1f}")
+        bare, native = duration(body)[0], duration(body, native=True)[0]
+        print(f"{name}: {bare * 1e3:.1f} ms without friction, {native * 1e3:.1f} ms by Exudyn alone")
+
+        for case, load in LOADS.items():
+            show(case, *duration(body, load), bare, native)
+        varying = LOADS["sticks and slides, load of time"]
+        show("regularised", *duration(body, varying, regularisation=1e-3), bare, native)
         if "--profile" in sys.argv:
             with cProfile.Profile() as profile:
-                duration(body, growing)
+                duration(body, varying)
             for order in ("cumulative", "tottime"):
                 pstats.Stats(profile).sort_stats(order).print_stats(40)

@@ -139,10 +139,11 @@ class RowLaw:
     ``weights``, shape (n,), are the derivatives of s by the nodes' velocities if they are constant. ``reference``,
     shape (n,), contains the reference coordinates of the nodes, ``static_ratio`` is static divided by
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
-    ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``point`` is the number of
-    a point, from 1, of a contact at several points. ``on_axis`` is False if the bodies can slide sideways.
-    ``largest`` is the largest friction in the run. Exudyn knows the mode ``entered``, and for each lock whether it is
-    ``held``. ``holds`` returns the forces of a contact at rest along its locks.
+    ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes, and ``called`` if Exudyn
+    calls ``force``. ``point`` is the number of a point, from 1, of a contact at several points. ``on_axis`` is False
+    if the bodies can slide sideways. ``largest`` is the largest friction in the run. Exudyn knows the mode
+    ``entered``, and for each lock whether it is ``held``. ``holds`` returns the forces of a contact at rest along its
+    locks.
     """
 
     weights: FloatArray = field(default_factory=lambda: np.empty(0))
@@ -153,6 +154,7 @@ class RowLaw:
     entered: Mode | None = None
     held: tuple[bool, ...] | None = None
     running: bool = False
+    called: bool = True
     point: int | None = None
     on_axis: bool = True
     largest: float = 0.0

@@ -11,14 +11,13 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.active_set import LoadedRows
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, OneWayLaw
 from exudyn_models.solver.rows.moment_loads import Loads
-from exudyn_models.solver.stick.complementarity import independent_rows, rest_or_slip
+from exudyn_models.solver.stick.complementarity import independent_rows, linked, rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.resting import NEAR, Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
@@ -341,7 +340,7 @@ class ModeChoice:
         shortest = RESOLVED * self._step
         speeds = 2.0 * np.maximum(shortest * bounds, RESOLVED * slips.terms())
         links = [[slips.to_rates[blocks[i], blocks[j]].any() for j in begun] for i in begun]
-        count, of_group = connected_components(np.array(links, float), directed=False)
+        count, of_group = linked(np.array(links, float))
         wanted: dict[int, float] = {}
         for number in range(count):
             group = [begun[k] for k in np.flatnonzero(of_group == number).tolist()]
@@ -354,9 +353,16 @@ class ModeChoice:
                 wanted.update((row, float(time * found[row])) for row in range(len(found))[blocks[i]])
         return wanted
 
-    def hold(self) -> bool:
+    def hold(self, t: float) -> bool:
         """Return whether all modes clearly go on at the present state; if False, ``margins`` decides."""
-        return self._line is not None and self._line.holds()
+        if self._line is not None:
+            return self._line.holds()
+        if self._springs or len(self._planar) < len(self._contacts):
+            return False
+        enough = 1.0 - NEAR
+        return all(contact.goes_on(self._mbs, t) for contact in self._planar) and all(
+            group.forces(t, enough)[1] < enough for group in self._resting.groups
+        )
 
     def margins(self, t: float) -> FloatArray:
         """Return numbers that fall below zero when the present modes end, shape (contacts + springs,).
@@ -381,7 +387,8 @@ class ModeChoice:
         if self._resting.rows:
             margins = np.minimum(margins, np.maximum(self._checked_left(t), -1.0))  # finite without friction
         # The margin keeps its size, so interpolation halves the interval that contains the jump.
-        margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
+        if changed:
+            margins[changed] = -np.maximum(np.abs(margins[changed]), LEAST)
         return margins
 
     def _checked_left(self, t: float) -> FloatArray:

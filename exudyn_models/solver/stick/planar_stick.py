@@ -8,20 +8,24 @@ Joints may leave only some directions of slip, with the basis B, shape (3, k). T
 of the load, so the contact holds if any share lies within the limit surface of the potential P(B·v).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
-from typing import Any
+from functools import cached_property, partial
+from typing import Any, cast
 
 import numpy as np
 
+from exudyn_models.forces.any_pair import parameters_of
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
+from exudyn_models.forces.jit import FLOATS, TABLE, entry_point
 from exudyn_models.forces.slip_kinematics import slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import constraint_and_gradients, force_and_jacobian
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
-    linear_friction,
-    potential_terms,
+    line_from,
+    linear_force,
+    linear_jacobian,
+    potential_along_locks,
     resisted_slip,
     slip_motion,
     unit_friction,
@@ -46,6 +50,8 @@ class PlanarStick(AxialStick):
 
     allowed: FloatArray = field(default_factory=lambda: np.empty((3, 0)))
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
+    resisted: FloatArray = field(default_factory=lambda: np.zeros(3))
+    """Latest slip that a load pulls at, where the next search for it starts."""
     radius: float = 0.0
     """Distance of the disc's centre from the master's axis in m, constant in stick."""
     frozen: bool = False
@@ -64,6 +70,12 @@ class PlanarStick(AxialStick):
     def renew(self) -> None:
         """Use the present load and coefficient from now on."""
         self._sliding = force_and_jacobian(self.kinds, self.reference, self.factors)
+        self._parameters = parameters_of(self.factors.geometry, self.kinds, self.reference)
+
+    @cached_property
+    def _linear_functions(self) -> tuple[Callable[..., Any], Callable[..., Any]]:
+        known = TABLE, TABLE, float, float, None, None, None, FLOATS, FLOATS
+        return entry_point(linear_force, *known), entry_point(linear_jacobian, *known, float, float)
 
     @property
     def most_locks(self) -> int:
@@ -83,7 +95,7 @@ class PlanarStick(AxialStick):
         names = "constraintUserFunction", "jacobianUserFunction"
         return {"scalingMarker0": np.zeros((count, 1)), **dict(zip(names, functions, strict=True))}
 
-    @property
+    @cached_property
     def scales(self) -> FloatArray:
         """Lengths in m, or 1, that turn a slip into one along the directions of its locks, shape (k,)."""
         return np.array([1.0, 1.0, self.mean_radius])[: self.most_locks]
@@ -114,7 +126,9 @@ class PlanarStick(AxialStick):
         """Return the motion for coordinates without reference values."""
         state = q.tobytes(), q_t.tobytes(), q_tt.tobytes()
         if self._motion is None or state != self._motion[0]:  # each step starts where the last one has ended
-            found = slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt)
+            found = slip_motion(
+                self.kinds, self.factors.geometry, self.mean_radius or 1.0, self.reference + q, q_t, q_tt
+            )
             self._motion = state, SlipMotion(*found)
         return self._motion[1]
 
@@ -124,11 +138,8 @@ class PlanarStick(AxialStick):
 
     def potential_along_locks(self, slip: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         """Return P (m/s) of a slip along the directions of the locks, shape (k,), its gradient and curvature."""
-        whole, count = np.zeros(3), len(slip)
-        whole[:count] = slip / self.scales
-        potential, gradient, curvature = potential_terms(whole, self.factors.geometry)
-        scales = self.scales
-        return potential, gradient[:count] / scales, curvature[:count, :count] / np.outer(scales, scales)
+        found = potential_along_locks(slip, self.mean_radius or 1.0, self.factors.geometry)
+        return cast(tuple[float, FloatArray, FloatArray], found)
 
     def potential_of(self, slip: FloatArray) -> float:
         """Return P in m/s."""
@@ -142,12 +153,8 @@ class PlanarStick(AxialStick):
 
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
         """Return the share of ``friction`` (N) that a ``wrench`` needs, and the resisted slip with P = 1 m/s."""
-        columns = np.ascontiguousarray(self.allowed)
-        if not (columns.T @ wrench).any():
-            return 0.0, np.zeros(3)
-        slip = resisted_slip(-wrench, columns, self.factors.geometry)
-        needed = self.potential_of(slip)
-        return needed / max(friction, needed / MOST_SHARE, TINY), slip / needed
+        needed, self.resisted = resisted_slip(-wrench, self.allowed, self.resisted, self.factors.geometry)
+        return needed / max(friction, needed / MOST_SHARE, TINY), self.resisted
 
     def holding_force(self, t: float) -> float:
         """Return the static friction in N."""
@@ -175,37 +182,19 @@ class PlanarStick(AxialStick):
             return [0.0] * len(q)
         if not self.predicts and not self.frozen:
             return self._sliding[0](mbs, t, item, q, q_t)
-        return self._linear(t, q, q_t, 0.0, 0.0)[0].tolist()
+        return self._linear(self._linear_functions[0], t, mbs, t, item, q, q_t)
 
     def start_step(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> None:
-        """Prepare the first iteration of a step."""
-        self.predicts = self.slides
-        if self.predicts:
-            start = self.motion(*state)
-            # A prescribed motion begins without slip.
-            self._start = start if start.potential > 0.0 else start._replace(slip=NEGLIGIBLE * self.direction)
+        """Prepare the first iteration of a step that slides."""
+        start, self.predicts = self.motion(*state), True
+        # A prescribed motion begins without slip.
+        self._start = start if start.potential > 0.0 else start._replace(slip=NEGLIGIBLE * self.direction)
+        self._line = line_from(self._start.slip, self.factors.geometry)
 
-    def _linear(
-        self,
-        t: float,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> Any:
-        start = self._start
+    def _linear(self, function: Callable[..., Any], t: float, *arguments: Any) -> Any:
+        start, slope = self._start, 0.0 if self.frozen else 1.0
         friction = self.factors.friction_force(t, start.radius, start.potential, float(start.slip[2]))
-        return linear_friction(
-            self.kinds,
-            self.factors.geometry,
-            self.reference + q,
-            np.array(q_t),
-            start.slip,
-            friction,
-            0.0 if self.frozen else 1.0,
-            position_factor,
-            velocity_factor,
-        )
+        return function(self._parameters, self._line, friction, slope, *arguments)
 
     def sliding_wrench(self, t: float, slip: FloatArray, radius: float) -> FloatArray:
         """Return force (N) and moment (N m) on the sliding disc, in the master's axes, shape (3,)."""
@@ -229,7 +218,8 @@ class PlanarStick(AxialStick):
             return np.zeros((len(q), len(q)))
         if self.predicts or self.frozen:
             self.predicts = False
-            return np.asarray(self._linear(t, q, q_t, -position_factor, -velocity_factor)[1])
+            arguments = mbs, t, item, q, q_t, position_factor, velocity_factor
+            return np.asarray(self._linear(self._linear_functions[1], t, *arguments))
         found: FloatArray = self._sliding[1](mbs, t, item, q, q_t, position_factor, velocity_factor)
         return found
 

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
-from scipy.sparse.csgraph import connected_components
 
 from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw
-from exudyn_models.solver.stick.complementarity import independent_rows
+from exudyn_models.solver.stick.complementarity import independent_rows, linked
 from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
 from reference_model.systems import FloatArray
@@ -57,6 +56,11 @@ class Group:
         This share is as small as possible, or below ``enough``.
         """
         held = -self.mbs.systemData.GetAECoordinates()[self.places]
+        if not len(self.by_chosen):  # a contact in the plane alone
+            contact, own, limit = self.contacts[0], held[self.blocks[0]], self.contacts[0].strength(t)[1]
+            assert isinstance(contact, PlanarContact)
+            bound = contact.share_bound(own, limit[0])
+            return held, bound if bound < enough else float(contact.shares(own, np.array(limit))[0][0])
         limits = [
             (0.0, 0.0) if isinstance(contact.stick, GrowingLimit) else contact.strength(t)[1]
             for contact in self.contacts
@@ -164,7 +168,7 @@ class Resting:
         links = np.zeros((len(resting), len(resting)))
         for i, shares in zip(others, by_chosen, strict=True):
             links[owner[i], owner[[chosen[j] for j in np.flatnonzero(shares).tolist()]]] = 1.0
-        count, of_group = connected_components(links, directed=False)
+        count, of_group = linked(links)
         of_first, of_rest = of_group[owner[chosen]], of_group[owner[others]]
         for number in range(count):
             own, first, rest = (np.flatnonzero(group == number) for group in (of_group, of_first, of_rest))

@@ -8,11 +8,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from exudyn_models.solver.stick.slip_motion import SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact
-from reference_model.systems import FloatArray
 
 ON_GRID = 1e-9
 """Tolerance of multiples of a step, as a share of it."""
@@ -24,6 +21,13 @@ TURN = 0.02
 """Largest change of the direction of friction in a step; a twelfth of its square is the relative error."""
 
 
+AIMED = 0.9
+"""Largest share of this change that is expected in the next step."""
+
+GROWTH = 2.0
+"""Largest ratio of a step and the one before it."""
+
+
 class SlidingSteps:
     """Choice of the next step, at most ``step`` (s), while contacts slide in the plane.
 
@@ -32,14 +36,15 @@ class SlidingSteps:
 
     def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:
         self._mbs, self._contacts, self._step = mbs, contacts, step
-        self._by_slip = self._growing = math.inf
-        self._directions: dict[PlanarContact, FloatArray] = {}
+        self._by_motion = self._growing = math.inf
+        self._rate = 0.0
+        self._directions: dict[PlanarContact, tuple[float, float, float]] = {}
         self.rests = False
 
     @property
     def longest(self) -> float:
         """Longest next step in s."""
-        return min(self._by_slip, self._growing)
+        return min(self._by_motion, self._growing)
 
     def begin(self, step: float) -> None:
         """Begin to slide with a first ``step`` (s)."""
@@ -53,33 +58,31 @@ class SlidingSteps:
         """Return whether a ``step`` (s) was short enough, and choose the next step."""
         if not self._contacts:
             return True
-        before, by_slip = self._directions, self._by_slip
+        before, by_motion, rate_before = self._directions, self._by_motion, self._rate
         self.survey()
-        turned = max(
-            (
-                float(np.linalg.norm(now - before[key]))
-                for key, now in self._directions.items()
-                if key in before
-            ),
-            default=0.0,
-        )
+        turns = [math.dist(now, before[key]) for key, now in self._directions.items() if key in before]
+        turned = max(turns, default=0.0)
+        rate = turned / step
+        growth = min(max(rate / rate_before, 1.0), GROWTH) if rate_before > 0.0 else 1.0
+        fits = AIMED * TURN / (rate * growth) if rate > 0.0 else math.inf
         if turned > TURN:
-            self._directions, self._by_slip, self.rests = before, by_slip, False
-            self._growing = step / 2.0
+            self._directions, self._by_motion, self._rate, self.rests = before, by_motion, rate_before, False
+            self._growing = max(fits, step / GROWTH)
             return False
-        self._growing = 2.0 * max(step, self._growing) if self._growing < self._step else math.inf
+        self._growing = GROWTH * max(step, self._growing) if self._growing < self._step else math.inf
+        self._by_motion, self._rate = min(self._by_motion, fits), rate
         return True
 
     def survey(self) -> None:
         """Record the directions of friction, the longest next step, and whether a contact rests."""
-        self._directions, self._by_slip, self.rests = {}, math.inf, False
+        self._directions, self._by_motion, self._rate, self.rests = {}, math.inf, 0.0, False
         for contact in self._contacts:
             if contact.free_to_slide:
                 motion = contact.slid(self._mbs)
                 if motion.potential > 0.0:  # a prescribed motion begins without slip
-                    self._directions[contact] = contact.scaled(motion.gradient)
+                    self._directions[contact] = motion.direction
                 shortest = contact.resolution * self._step
                 self.rests |= self.stops(contact, motion)
                 if motion.rate_potential > 0.0:
                     longest = APPROACH * motion.potential / motion.rate_potential
-                    self._by_slip = min(self._by_slip, max(longest, shortest))
+                    self._by_motion = min(self._by_motion, max(longest, shortest))

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, cast
 
 import exudyn as exu
@@ -65,6 +66,8 @@ class StickingContact:
     stick: RowLaw
     places: NDArray[Any]
     """Positions of its coordinates among the model's."""
+    whole: RowLaw
+    """Law of the connector; ``stick`` is one of its parts."""
 
     resolution: ClassVar[float] = 1e-9
     """Share of a step within which a contact that counts as resting stops, and relative error of slips."""
@@ -87,7 +90,9 @@ class StickingContact:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
-        """Let constraints hold these directions of slip."""
+        """Let constraints hold these directions of slip; in the plane, the last constraint holds all of them."""
+        if len(directions) == self.directions > 1:
+            directions = [self.directions]
         before = self.stick.held
         self.stick.held = tuple(i in directions for i in range(len(self.stick.locks)))
         if self.stick.held != before:
@@ -95,8 +100,10 @@ class StickingContact:
                 mbs.SetObjectParameter(lock, "activeConnector", holds)
 
     def force_places(self, data: Any) -> NDArray[Any]:
-        """Return the places of the forces along its locks among the constraint forces, twice, shape (2, k)."""
-        return np.array([[data.GetObjectLTGAE(lock)[0] for lock in self.stick.locks[: self.directions]]] * 2)
+        """Return the places of the forces of constraints for one direction each, and for all, shape (2, k)."""
+        places = [np.array(data.GetObjectLTGAE(lock)) for lock in self.stick.locks]
+        alone = np.concatenate(places[: self.directions])
+        return np.array([alone, places[self.directions] if self.directions > 1 else alone])
 
     def omit_user_functions(self, mbs: Any) -> None:
         """Let Exudyn evaluate constant moments itself."""
@@ -154,9 +161,9 @@ class StickingContact:
         """Return coordinates without reference values, and their derivatives."""
         data, places = mbs.systemData, self.places
         return (
-            data.GetODE2Coordinates(configuration)[places],
-            data.GetODE2Coordinates_t(configuration)[places],
-            data.GetODE2Coordinates_tt(configuration)[places],
+            data.GetODE2Coordinates(configuration, False)[places],
+            data.GetODE2Coordinates_t(configuration, False)[places],
+            data.GetODE2Coordinates_tt(configuration, False)[places],
         )
 
     def margin(self, mbs: Any) -> float:
@@ -199,7 +206,7 @@ class PlanarContact(StickingContact):
 
     resolution: ClassVar[float] = RESOLVED
 
-    @property
+    @cached_property
     def planar(self) -> PlanarStick:
         """Law of friction."""
         return cast(PlanarStick, self.stick)
@@ -209,14 +216,20 @@ class PlanarContact(StickingContact):
         """Number of directions of slip that locks hold."""
         return self.planar.most_locks
 
-    def lock(self, mbs: Any, directions: Sequence[int] = ()) -> None:
-        """Let constraints hold these directions of slip; one holds all of them."""
-        super().lock(mbs, [self.directions] if len(directions) == self.directions else directions)
+    def enter(self, mbs: Any, mode: Mode) -> None:
+        """Switch to a mode; a contact at rest needs no user functions."""
+        super().enter(mbs, mode)
+        self._call(mbs, any(part.slides for part in self.whole.active))
 
-    def force_places(self, data: Any) -> NDArray[Any]:
-        """Return the places of the forces along its locks, and of the constraint that holds all, shape (2, k)."""
-        together = data.GetObjectLTGAE(self.stick.locks[self.directions])
-        return np.array([super().force_places(data)[0], together], dtype=int)
+    def restore_user_functions(self, mbs: Any) -> None:
+        """Let Exudyn call the user functions of the connector."""
+        self._call(mbs, True)
+
+    def _call(self, mbs: Any, calls: bool) -> None:
+        if calls != self.whole.called:
+            self.whole.called = calls
+            mbs.SetObjectParameter(self.item, "forceUserFunction", self.whole.force if calls else 0)
+            mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.whole.jacobian if calls else 0)
 
     @property
     def free_to_slide(self) -> bool:
@@ -244,10 +257,6 @@ class PlanarContact(StickingContact):
         free = axes[:, sizes > DEPENDENT * lengths.max()] / self.planar.scales[:, None]
         self.planar.allowed = np.vstack([free, np.zeros((3 - len(free), free.shape[1]))])
 
-    def scaled(self, gradient: FloatArray) -> FloatArray:
-        """Return a dimensionless gradient of P."""
-        return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
-
     def strength(self, t: float) -> tuple[float, tuple[float, float]]:
         """Return the static friction in N, and twice the same, > 0."""
         holding = self.planar.without_rounding(self.planar.holding_force(t))
@@ -260,10 +269,15 @@ class PlanarContact(StickingContact):
 
     def shares(self, forces: FloatArray, limits: FloatArray) -> tuple[Sequence[float], Sequence[FloatArray]]:
         """Return the share of the ``limits`` of forces along the locks, and its slope."""
-        wrench, count = np.zeros(3), len(forces)
-        wrench[:count] = self.planar.scales * forces
+        scales, wrench, count = self.planar.scales, np.zeros(3), len(forces)
+        wrench[:count] = scales * forces
         share, slip = self.planar.load_share(wrench, limits[0])
-        return [share], [-slip[:count] * self.planar.scales / limits[0]]
+        return [share], [slip[:count] * (-scales / limits[0])]
+
+    def share_bound(self, forces: FloatArray, limit: float) -> float:
+        """Return a bound of this share: the limit surface contains the hull of forces alone and moments alone."""
+        x, y, *rim = forces.tolist()
+        return (math.hypot(x, y) + abs(sum(rim))) / limit
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion, and store its radius for the capacity in stick."""
@@ -273,7 +287,8 @@ class PlanarContact(StickingContact):
 
     def start_step(self, mbs: Any) -> None:
         """Prepare the friction for the next step."""
-        self.planar.start_step(self._state(mbs))
+        if self.stick.slides:
+            self.planar.start_step(self._state(mbs))
 
     def slid(self, mbs: Any) -> SlipMotion:
         """Return the present motion, and store its direction as the mode."""
@@ -292,10 +307,15 @@ class PlanarContact(StickingContact):
             return 1.0
         return 1.0 - self.motion(mbs).potential / STILL
 
+    def goes_on(self, mbs: Any, t: float) -> bool:
+        """Return whether the contact neither opens nor closes, and no slip begins or vanishes."""
+        return (self.strength(t)[0] == 0.0) is (self.mode is Mode.OPEN) and self.margin(mbs) == 1.0
+
     def sliding_mode(self, slip: FloatArray) -> Mode:
         """Return the mode of a contact with a slip."""
-        sideways = math.hypot(slip[0], slip[1])
-        rim = slip[2] * (self.planar.mean_radius or 1.0) if len(slip) == 3 else 0.0
+        x, y, *spin = slip.tolist()
+        sideways = math.hypot(x, y)
+        rim = spin[0] * (self.planar.mean_radius or 1.0) if spin else 0.0
         return Mode.BACKWARD if rim < -NEGLIGIBLE * sideways else Mode.FORWARD  # spin may be a rounding error
 
 
@@ -306,14 +326,14 @@ def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContac
     moves it. Raises ``ValueError`` if a contact in the plane accompanies a gear with losses or a one-way clutch.
     """
     contacts = [
-        StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)))
+        StickingContact(item, law, np.array(mbs.systemData.GetObjectLTGODE2(item)), law)
         for item, law in laws_of(mbs).items()
         if not (isinstance(law, MeshLaw) and law.lossless)
     ]
     # Powers keep periodic motions from vanishing at all of these times.
     _locate(mbs, start + (end - start) * np.linspace(0.0, 1.0, 30) ** 1.1, contacts)
     found = [
-        _kind(part)(contact.item, part, contact.places)
+        _kind(part)(contact.item, part, contact.places, contact.stick)
         for contact in contacts
         for part in contact.stick.active
     ]
@@ -338,7 +358,7 @@ def _kind(part: RowLaw) -> type[StickingContact]:
 def _locate(mbs: Any, times: FloatArray, contacts: Sequence[StickingContact]) -> None:
     """Find the parts of contacts that joints hold on one axis at all ``times`` (s)."""
     parts = [
-        PlanarContact(contact.item, part, contact.places)
+        PlanarContact(contact.item, part, contact.places, contact.stick)
         for contact in contacts
         for part in contact.stick.parts
         if isinstance(part, PlanarStick)

@@ -119,8 +119,8 @@ class _Run:
             self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
             friction = max(contact.strength(self._start)[0] for contact in self._planar)
             values["absoluteTolerance"] = min(newton.absoluteTolerance, FORCES * friction)
-            # The direction of friction turns too fast for an old Jacobian.
-            values["useModifiedNewton"] = False
+            # The direction of friction turns too fast for the Jacobian of an earlier step.
+            values["useModifiedNewton"] = values["modifiedNewtonJacUpdatePerStep"] = True
         return values
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
@@ -225,7 +225,7 @@ class _Run:
                 longest, recovery = t - start, self._options.adaptiveStepRecoverySteps
             elif recovery == 0:
                 longest, recovery = 2.0 * longest, self._options.adaptiveStepRecoverySteps
-            if not self._modes.hold():
+            if not self._modes.hold(t):
                 now = self._modes.margins(t)
                 if now.min() < 0.0:
                     self._take_back()
