@@ -99,19 +99,19 @@ class ModeChoice:
         return [group.contacts for group in self._resting.groups]
 
     def take_back(self, t: float) -> None:
-        """Subtract the first slip of contacts that slide much faster at the time t (s).
+        """Subtract the first slips, together as they were given, once all contacts slide much faster at the time t (s).
 
         Friction keeps this excess of speed in the direction of the slip, so subtract it in this direction.
         """
-        for contact, first in list(self._first_slips.items()):
-            motion = contact.motion(self._mbs, exu.ConfigurationType.Initial)
-            if contact.free_to_slide and motion.potential < GROWN * first:
-                continue
-            del self._first_slips[contact]
-            if contact.free_to_slide:
-                self._dynamics.evaluate(t)
-                slips = Slips(self._mbs, self._dynamics, [contact])
-                slips.give(dict(enumerate((1.0 - first / motion.potential) * slips.now)), [])
+        self._first_slips = {one: size for one, size in self._first_slips.items() if one.free_to_slide}
+        sliding, firsts = list(self._first_slips), np.array(list(self._first_slips.values()))
+        motions = [contact.motion(self._mbs, exu.ConfigurationType.Initial) for contact in sliding]
+        sizes = np.array([motion.potential for motion in motions])
+        if sliding and (sizes >= GROWN * firsts).all():
+            self._dynamics.evaluate(t)
+            slips = Slips(self._mbs, self._dynamics, sliding)
+            slips.give(dict(enumerate((1.0 - firsts / sizes)[slips.sets.owner] * slips.now)), [])
+            self._first_slips.clear()
         self._slides.starts = bool(self._first_slips)
 
     def end(self, ended: Iterable[StickingContact]) -> None:
