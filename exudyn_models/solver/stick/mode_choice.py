@@ -99,7 +99,7 @@ class ModeChoice:
         return [group.contacts for group in self._resting.groups]
 
     def take_back(self, t: float) -> None:
-        """Subtract the first slips, together as they were given, once all contacts slide much faster at the time t (s).
+        """Subtract the first slips, together as they were given, once all contacts are much faster at t (s).
 
         Friction keeps this excess of speed in the direction of the slip, so subtract it in this direction.
         """

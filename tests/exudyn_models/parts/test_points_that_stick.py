@@ -191,7 +191,7 @@ def test_points_that_begin_to_slide_together_keep_their_directions():
             arm = complex(x, y) * np.exp(1j * motion[2])
             slip = complex(*motion[3:5]) + 1j * motion[5] * arm
             force = -FRICTION * share * slip / np.hypot(abs(slip), 1e-9)
-            load = load + [force.real, force.imag, (arm.conjugate() * force).imag]
+            load = load + np.array([force.real, force.imag, (arm.conjugate() * force).imag])
         return [*motion[3:], *load / [MASS, MASS, inertia]]
 
     exact = solve_ivp(accelerations, (0.0, 0.01), np.zeros(6), "Radau", rtol=1e-8, atol=1e-12).y[3:, -1]
