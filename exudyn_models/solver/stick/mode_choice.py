@@ -373,7 +373,8 @@ class ModeChoice:
             self._dynamics.evaluate(t)
             self._iterate(t, self._present, (CURRENT,))
             left = self._left(t)
-            if least < -1.0 and left.min() > 0.0:
+            change = self._data.GetAECoordinates() - before[0]
+            if least < -1.0 and left.min() > 0.0 and np.abs(change).max() > SETTLED * self._limits.max():
                 raise SimulationError(
                     f"a locked contact held {1.0 - least:.3g} times its capacity in a step, but not at its end t = "
                     f"{t:.9g} s: a speed that a constraint prescribes jumps there; pass this time in breaks"

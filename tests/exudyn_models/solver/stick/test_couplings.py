@@ -176,6 +176,19 @@ def test_a_one_way_clutch_that_starts_in_its_locked_direction_equalises_the_spee
     assert (rate_of(mbs, driver), rate_of(mbs, driven)) == pytest.approx((2.0, 2.0), rel=1e-12)
 
 
+def test_one_way_clutches_that_share_a_load_after_an_impact_release_as_one():
+    """Both rotors have 4/3 rad/s after the impact, and separate when 5·sin(9·t)/1 = −0.3/2 rad/s²."""
+    mbs = new_model()
+    first, second = rotor(mbs, 1.0, 2.0), rotor(mbs, 2.0, 1.0)
+    drive(mbs, first, lambda t: 5.0 * math.sin(9.0 * t))
+    drive(mbs, second, -0.3)
+    for _ in range(2):
+        add_one_way_clutch(mbs, first, second)
+    release = (math.pi + math.asin(0.03)) / 9.0
+    changes = changes_of(mbs, 0.4, 1e-3)
+    assert [(time, after) for time, _, _, after in changes] == [(pytest.approx(release, abs=1e-6), 1)] * 2
+
+
 def test_a_locked_one_way_clutch_carries_a_rotor_along_with_a_locked_friction_clutch():
     mbs = new_model()
     rotors = [rotor(mbs, inertia, 0.0) for inertia in (1.0, 0.5, 1.5)]
