@@ -75,8 +75,7 @@ class ModeChoice:
         self._meshes = self._loads.meshes
         locks = [lock for contact in contacts for lock in contact.stick.locks[: contact.directions]]
         self._places = np.array([int(self._data.GetObjectLTGAE(lock)[0]) for lock in locks], dtype=int)
-        self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
-        self._slipped = set[StickingContact]()
+        self._ended, self._overloaded, self._slipped = (set[StickingContact]() for _ in range(3))
         self._first_slips: dict[PlanarContact, float] = {}
         self._line: Line | None = None
         self._holding, self._limits = np.zeros(len(contacts)), np.zeros((len(contacts), 2))
@@ -85,13 +84,17 @@ class ModeChoice:
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
-        """Let velocities satisfy all joints, by an impact without friction."""
+        """Let velocities satisfy all joints and one-way clutches, by an impact without friction."""
         initial = exu.ConfigurationType.Initial
         self._load()
         self._dynamics.evaluate(t)
         change = self._dynamics.violation()
         if change.any():
             self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t(initial) + change, initial)
+        if self._one_way:
+            self._load()
+            self._dynamics.evaluate(t, self._places)
+            Slips(self._mbs, self._dynamics, [self._contacts[i] for i in self._one_way]).collide()
 
     @property
     def groups(self) -> list[list[StickingContact]]:
@@ -105,8 +108,7 @@ class ModeChoice:
         """
         self._first_slips = {one: size for one, size in self._first_slips.items() if one.free_to_slide}
         sliding, firsts = list(self._first_slips), np.array(list(self._first_slips.values()))
-        motions = [contact.motion(self._mbs, exu.ConfigurationType.Initial) for contact in sliding]
-        sizes = np.array([motion.potential for motion in motions])
+        sizes = np.array([one.motion(self._mbs, exu.ConfigurationType.Initial).potential for one in sliding])
         if sliding and (sizes >= GROWN * firsts).all():
             self._dynamics.evaluate(t)
             slips = Slips(self._mbs, self._dynamics, sliding)
@@ -152,8 +154,7 @@ class ModeChoice:
                 self._slipped.add(contact)
             own = range(rows.start, rows.stop) if contact.mode == Mode.LOCKED else ()
             contact.lock(self._mbs, [i for i, row in enumerate(own) if row in held])
-        firsts = [rows.start for rows in slips.sets.blocks]
-        self._rows = slips.rows[firsts]
+        self._rows = slips.rows[[rows.start for rows in slips.sets.blocks]]
         self._directions = np.array([int(one.mode) * one.stick.slides for one in self._contacts], float)
         self._offsets = 1.0 - np.abs(self._directions)
         simple = not (self._varying or self._springs or self._resting.groups)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.solver.items import CURRENT
+from exudyn_models.solver.rows.active_set import unloaded
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Sets, independent_rows
 from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
 from exudyn_models.solver.stick.sticking_contacts import STILL, PlanarContact, StickingContact
@@ -90,6 +91,12 @@ class Slips:
             return np.empty(0), accelerations, constraints
         holding = np.linalg.solve(self.to_rates[np.ix_(held, held)], -self.rates(accelerations)[held])
         return np.asarray(holding, float), *self._dynamics.solution(forces + holding @ self.rows[held])
+
+    def collide(self) -> None:
+        """Give one-way clutches, the only contacts, slips >= 0 by an impact."""
+        if self.now.min() < 0.0:
+            limits = np.tile([0.0, np.inf], (len(self.now), 1))
+            self.give(dict(enumerate(unloaded(len(self.now)).forces(self.to_rates, self.now, limits)[1])), [])
 
     def give(self, wanted: dict[int, float], first: Sequence[int]) -> None:
         """Give rows the slips ``wanted`` at the least kinetic energy; if rows conflict, only the rows ``first``."""
