@@ -83,12 +83,15 @@ class ModeChoice:
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
-        """Let velocities satisfy all joints, by an impact without friction."""
+        """Let velocities satisfy all joints and one-way clutches, by an impact without friction."""
         self._data.SetAECoordinates(self._data.GetAECoordinates(exu.ConfigurationType.Initial))
         self._dynamics.evaluate(t)
         change = self._dynamics.violation()
         if change.any():
             self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t() + change)
+        if self._one_way:
+            self._dynamics.evaluate(t, self._locks)
+            Slips(self._mbs, self._dynamics, [self._contacts[i] for i in self._one_way]).collide()
 
     @property
     def solver(self) -> Any:
@@ -400,7 +403,8 @@ class ModeChoice:
             self._slips_at(t)
             self._iterate(t, self._present)
             left = self._left(t)
-            if least < -1.0 and left.min() > 0.0:
+            change = self._data.GetAECoordinates() - before[0]
+            if least < -1.0 and left.min() > 0.0 and np.abs(change).max() > SETTLED * self._limits.max():
                 raise SimulationError(
                     f"a locked contact held {1.0 - least:.3g} times its capacity in a step, but not at its end t = "
                     f"{t:.9g} s: a speed that a constraint prescribes jumps there; pass this time in breaks"

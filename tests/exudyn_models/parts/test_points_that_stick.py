@@ -176,6 +176,29 @@ def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_to
     assert [*force[:2], float(moment)] == pytest.approx(largest, rel=1e-4)
 
 
+def test_points_that_begin_to_slide_together_keep_their_directions():
+    """Nearly regularised friction in SciPy has the motion of a body that loads on its centre set in motion."""
+    start, rates = np.array([1.4985, 1.2097, -0.0414]), np.array([19.345, 11.409, 1.6084])
+    mbs, inertia = new_model(), 0.02
+    node = planar_body(mbs, MASS, inertia, REST, REST)
+    add_ring_friction(mbs, None, node, normal_load=10.0, **LAW)
+    for load, growth in ((start, lambda t: 1.0), (rates, lambda t: t)):
+        push(mbs, node, load, growth)
+
+    def accelerations(t, motion):
+        load = start + rates * t
+        for x, y, share in FEET:
+            arm = complex(x, y) * np.exp(1j * motion[2])
+            slip = complex(*motion[3:5]) + 1j * motion[5] * arm
+            force = -FRICTION * share * slip / np.hypot(abs(slip), 1e-9)
+            load = load + np.array([force.real, force.imag, (arm.conjugate() * force).imag])
+        return [*motion[3:], *load / [MASS, MASS, inertia]]
+
+    exact = solve_ivp(accelerations, (0.0, 0.01), np.zeros(6), "Radau", rtol=1e-8, atol=1e-12).y[3:, -1]
+    assert run(mbs, 0.01, 20) == []
+    assert mbs.systemData.GetODE2Coordinates_t() == pytest.approx(exact, abs=1e-6)
+
+
 def test_a_deleted_contact_releases_all_points():
     mbs, node, contact = body_on_feet()
     push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
