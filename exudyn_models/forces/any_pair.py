@@ -211,4 +211,30 @@ def slip_in_step(
     )
 
 
-change_of_slip = KeptOnDisk(slip_in_step)
+@compiled
+def losses_on_any(tables: FloatArray, places: Any, q: FloatArray, q_t: FloatArray) -> FloatArray:
+    """Return for each contact its lost power (W) and the results of ``slip_on_any``, shape (k, 4).
+
+    Rows of ``tables`` contain ``Parameters``, and rows of ``places`` those of the contact's coordinates in ``q`` and
+    ``q_t``, which exclude reference values.
+    """
+    result = np.empty((len(tables), 4))
+    for i in range(len(tables)):
+        contact, kinds = contact_of(tables[i])
+        size = SIZES[kinds[0]] + SIZES[kinds[1]]
+        coordinates, velocities = np.empty(size), np.empty(size)
+        for k in range(size):
+            coordinates[k] = tables[i, REFERENCE_AT + k] + q[places[i, k]]
+            velocities[k] = q_t[places[i, k]]
+        to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
+        ux, uy, spin = slip_of_nodes(to_slip, velocities)
+        angle = math.atan2(sine, cosine)
+        fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
+        result[i, 0] = -(fx * ux + fy * uy + moment * spin)
+        result[i, 1] = math.sqrt(x * x + y * y)
+        result[i, 2] = slip_potential_of_contact(ux, uy, spin, angle, contact)
+        result[i, 3] = spin
+    return result
+
+
+change_of_slip, losses_of_contacts = KeptOnDisk(slip_in_step), KeptOnDisk(losses_on_any)

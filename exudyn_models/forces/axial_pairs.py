@@ -222,7 +222,7 @@ class RowLaw:
 
     def lost_power(self, t: float, twist: float, rate: float) -> float:
         """Return the lost power in W."""
-        return -self.moment_and_friction(t, twist, rate)[1] * rate
+        return -self.moment(t, rate) * rate if self.slides else 0.0
 
     def energy(self, twist: float) -> float:
         """Return the stored energy in J."""
@@ -341,10 +341,9 @@ class AxialStick(RowLaw):
 
     def moment(self, t: float, spin: float) -> float:
         """Return the moment in N m on the disc, without the moment of the constraint."""
-        if not self.slides:
-            return 0.0
-        direction = int(self.mode or 0)
-        return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
+        if self.mode == Mode.FORWARD:
+            return -self.sliding_moment(t, max(spin, AT_REST))
+        return self.sliding_moment(t, min(spin, -AT_REST)) if self.mode == Mode.BACKWARD else 0.0
 
     def jacobian(
         self,

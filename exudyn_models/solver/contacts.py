@@ -101,6 +101,11 @@ def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
     return connector.places
 
 
+def coordinates_of(mbs: Any, connector: Connector, item: Any) -> list[int]:
+    """Return the places of the coordinates of a connector, as in ``places_of``."""
+    return [place for own in places_of(mbs, connector, item) for place in range(own.start, own.stop)]
+
+
 def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
     """Return coordinates without reference values and their rates, at half the cost of the nodes' own outputs.
 
