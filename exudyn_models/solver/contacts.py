@@ -57,7 +57,7 @@ class Contact(Lockable):
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
-    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
+    contacts are Exudyn's coordinate connectors.
     """
 
     kinds: Kinds
