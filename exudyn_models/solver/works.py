@@ -13,9 +13,9 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.any_pair import REFERENCE_AT, Parameters, losses_of_contacts, parameters_of
+from exudyn_models.forces.any_pair import losses_on_any, parameters_of, tables_of
 from exudyn_models.forces.axial_pairs import RowLaw
-from exudyn_models.forces.slip_kinematics import SIZES
+from exudyn_models.forces.jit import TABLE, TABLES, entry_point
 from exudyn_models.solver.contacts import Contact
 from exudyn_models.solver.items import CURRENT, at_assembly, items
 from exudyn_models.solver.solver_run import after_every_step, quiet
@@ -68,19 +68,19 @@ class Works:
         """Places of the works among the first-order coordinates."""
         return np.array(self._data.GetObjectLTGODE1(self.item))
 
-    def at(self, t: float) -> FloatArray:
+    def at(self, t: float) -> list[float]:
         """Return the powers at the current state and the time t (s), in the units of the works."""
         if self._evaluated is None:
             self._evaluated = _Powers(self._mbs, self._powers, self.units)
         return self._evaluated.at(t)
 
-    def rates(self, mbs: Any, t: float, item: int, works: Any) -> FloatArray:
+    def rates(self, mbs: Any, t: float, item: int, works: Any) -> list[float]:
         """Return the powers (user function of the object, except in implicit runs of ``solve_dynamic``)."""
         return self.at(t)
 
     def hold(self, t: float) -> FloatArray:
         """Return the powers, and let Exudyn integrate them until the next call."""
-        powers = self.at(t)
+        powers = np.array(self.at(t))
         self._mbs.SetObjectParameter(self.item, "rhsVector", powers)
         return powers
 
@@ -130,7 +130,7 @@ class _Powers:
         ]
         self._others = [power for power, source in sources.items() if source is None]
         distinct = [power for power, *_ in (*rows, *slips)] + self._others
-        self._which, self._units = np.array([distinct.index(power) for power in powers]), np.array(units)
+        self._copies = [(distinct.index(power), unit) for power, unit in zip(powers, units, strict=True)]
         self._laws: list[RowLaw] = [law for _, law, _ in rows]
         self._weights = np.zeros((len(rows), self._data.ODE2Size()))
         for weights, (_, law, places) in zip(self._weights, rows, strict=True):
@@ -138,19 +138,22 @@ class _Powers:
         self._twists = np.array([law.twist(0.0 * law.weights) for law in self._laws])
         self._modes, self._varying, self._moments = list[Any](), list[int](), np.empty(0)
         self._factors = [contact.factors for _, contact, _ in slips]
-        self._tables, self._places = _tables([(contact, places) for _, contact, places in slips])
+        # Compiled when first needed.
+        self._losses_on_any = entry_point(losses_on_any, TABLES, TABLE, TABLE) if slips else None
+        parameters = [parameters_of(one.factors.geometry, one.kinds, one.reference) for _, one, _ in slips]
+        self._tables = tables_of(parameters, [places for *_, places in slips])
 
-    def at(self, t: float) -> FloatArray:
+    def at(self, t: float) -> list[float]:
         """Return all powers at the current state and the time t (s)."""
         data, found = self._data, self._of_rows(t) if self._laws else list[float]()
-        if self._factors:
+        if self._losses_on_any is not None:
             state = data.GetODE2Coordinates(CURRENT, False), data.GetODE2Coordinates_t(CURRENT, False)
-            losses = losses_of_contacts(self._tables, self._places, *state).tolist()
+            losses = self._losses_on_any(self._tables, *state).tolist()
             for factors, (loss, radius, speed, spin) in zip(self._factors, losses, strict=True):
                 found.append(loss * factors.friction_force(t, radius, speed, spin))
         for power in self._others:
             found.append(power(self._mbs, t))
-        return np.asarray(np.array(found)[self._which] / self._units)
+        return [found[i] / unit for i, unit in self._copies]
 
     def _of_rows(self, t: float) -> list[float]:
         modes = [law.mode for law in self._laws]
@@ -191,13 +194,3 @@ def running_works(mbs: Any) -> Works | None:
     """Return the works of a model in an implicit run of ``solve_dynamic``, None without."""
     works: Works | None = mbs.sys.get(_WORKS)
     return works if works is not None and works.running else None
-
-
-def _tables(slips: Sequence[tuple[Contact, list[int]]]) -> tuple[Parameters, NDArray[np.int64]]:
-    """Return the first two arguments of ``losses_of_contacts`` for contacts with places, under 1 N."""
-    tables = np.zeros((len(slips), REFERENCE_AT + 2 * max(SIZES)))
-    places = np.zeros((len(slips), 2 * max(SIZES)), dtype=np.int64)
-    for i, (contact, own) in enumerate(slips):
-        parameters = parameters_of(contact.factors.geometry, contact.kinds, contact.reference)
-        tables[i, : len(parameters)], places[i, : len(own)] = parameters, own
-    return tables, places
