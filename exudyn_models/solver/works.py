@@ -92,12 +92,11 @@ class Works:
         def add_step(mbs: Any, t: float) -> bool:
             step = t - data.GetTime(start)
             if step > 0.0:
-                works, rates, powers = data.GetODE1Coordinates(), data.GetODE1Coordinates_t(), self.hold(t)
-                means = (data.GetODE1Coordinates_t(start, False)[places] + powers) / 2.0
-                works[places] = data.GetODE1Coordinates(start, False)[places] + step * means
-                rates[places] = powers
-                data.SetODE1Coordinates(works)
-                data.SetODE1Coordinates_t(rates)
+                powers = self.hold(t)
+                both = data.GetODE1Coordinates_t(start, False)[places] + powers
+                works = data.GetODE1Coordinates(start, False)[places] + step / 2.0 * both
+                data.GetODE1Coordinates(CURRENT, False)[places] = works  # in Exudyn's own memory
+                data.GetODE1Coordinates_t(CURRENT, False)[places] = powers
             return True
 
         self.forget()
@@ -122,14 +121,13 @@ class _Powers:
     def __init__(self, mbs: Any, powers: Sequence[Power], units: Sequence[float]) -> None:
         self._mbs, self._data = mbs, mbs.systemData
         sources = {power: getattr(getattr(power, "__self__", None), "dissipation", None) for power in powers}
-        rows = [
-            (power, *source) for power, source in sources.items() if source and isinstance(source[0], RowLaw)
-        ]
-        slips = [
-            (power, *source) for power, source in sources.items() if source and isinstance(source[0], Contact)
-        ]
-        self._others = [power for power, source in sources.items() if source is None]
-        distinct = [power for power, *_ in (*rows, *slips)] + self._others
+        known = [(power, *source) for power, source in sources.items() if source is not None]
+        rows = [(power, law, places) for power, law, places in known if isinstance(law, RowLaw)]
+        slips = [(power, one, places) for power, one, places in known if isinstance(one, Contact)]
+        slips = slips if len(slips) > 1 else []  # a single contact costs less by itself
+        together = [power for power, *_ in (*rows, *slips)]
+        self._others = [power for power in sources if power not in together]
+        distinct = together + self._others
         self._copies = [(distinct.index(power), unit) for power, unit in zip(powers, units, strict=True)]
         self._laws: list[RowLaw] = [law for _, law, _ in rows]
         self._weights = np.zeros((len(rows), self._data.ODE2Size()))
@@ -145,8 +143,9 @@ class _Powers:
 
     def at(self, t: float) -> list[float]:
         """Return all powers at the current state and the time t (s)."""
-        data, found = self._data, self._of_rows(t) if self._laws else list[float]()
+        found: list[float] = self._of_rows(t) if self._laws else []
         if self._losses_on_any is not None:
+            data = self._data
             state = data.GetODE2Coordinates(CURRENT, False), data.GetODE2Coordinates_t(CURRENT, False)
             losses = self._losses_on_any(self._tables, *state).tolist()
             for factors, (loss, radius, speed, spin) in zip(self._factors, losses, strict=True):
