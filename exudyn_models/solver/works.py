@@ -21,7 +21,7 @@ from exudyn_models.solver.items import CURRENT, at_assembly, items
 from exudyn_models.solver.solver_run import after_every_step, quiet
 from reference_model.systems import FloatArray
 
-_WORKS = "works"
+_WORKS = "works of powers"
 
 Power = Callable[[Any, float], float]
 """Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
@@ -108,7 +108,7 @@ class Works:
         finally:
             self.running = False
             mbs.SetObjectParameter(self.item, "rhsUserFunction", self.rates)
-            mbs.SetObjectParameter(self.item, "rhsVector", [0.0] * len(places))
+            mbs.SetObjectParameter(self.item, "rhsVector", [])
 
 
 class _Powers:

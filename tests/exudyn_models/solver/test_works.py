@@ -82,3 +82,20 @@ def test_works_change_neither_the_motion_nor_the_effort_of_newton():
         efforts.append((steps.newtonJacobiCount, steps.newtonStepsCount))
     np.testing.assert_allclose(*ends, rtol=0.0, atol=1e-7)
     assert np.abs(np.diff(efforts, axis=0)).max() < 0.02 * max(efforts[0])
+
+
+def test_a_model_can_get_another_work_after_a_run():
+    mbs = new_model()
+    contacts = [
+        add_ring_friction(mbs, None, rotor(mbs, 1.0, speed), normal_load=10.0, regularisation=0.1, **RING)
+        for speed in (9.0, -4.0)
+    ]
+    heats = []
+    for contact in contacts:
+        heats.append(contact.add_sensor("heat"))
+        for solver in (exu.DynamicSolverType.TrapezoidalIndex2, exu.DynamicSolverType.RK44):
+            mbs.Assemble()
+            solve_dynamic(mbs, settings_of(0.1, 100), solver)
+            moment, found = 0.3, [mbs.GetSensorValues(heat) for heat in heats]
+            expected = [moment * (speed - moment * 0.05) * 0.1 for speed in (9.0, 4.0)]
+            np.testing.assert_allclose(found, expected[: len(found)], rtol=1e-9)
