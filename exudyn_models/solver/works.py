@@ -27,6 +27,67 @@ Power = Callable[[Any, float], float]
 """Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
 
 
+class _Powers:
+    """Distinct powers of a model until its next assembly, and their copies in ``units`` W.
+
+    The slips of contacts and couplings of rotors are one product of matrices. Their moments are kept until a mode
+    changes, unless they vary within a mode. One compiled call evaluates all other regularised contacts.
+    """
+
+    def __init__(self, mbs: Any, powers: Sequence[Power], units: Sequence[float]) -> None:
+        self._mbs, self._data = mbs, mbs.systemData
+        sources = {power: getattr(getattr(power, "__self__", None), "dissipation", None) for power in powers}
+        known = [(power, *source) for power, source in sources.items() if source is not None]
+        rows = [(power, law, places) for power, law, places in known if isinstance(law, RowLaw)]
+        slips = [(power, one, places) for power, one, places in known if isinstance(one, Contact)]
+        slips = slips if len(slips) > 1 else []  # a single contact costs less by itself
+        together = [power for power, *_ in (*rows, *slips)]
+        self._others = [power for power in sources if power not in together]
+        distinct = together + self._others
+        self.which, self.units = np.array([distinct.index(power) for power in powers]), np.array(units)
+        self.copies = list(zip(self.which.tolist(), units, strict=True))
+        self._laws: list[RowLaw] = [law for _, law, _ in rows]
+        self._weights = np.zeros((len(rows), self._data.ODE2Size()))
+        for weights, (_, law, places) in zip(self._weights, rows, strict=True):
+            weights[places] = law.weights
+        self._twists = np.array([law.twist(0.0 * law.weights) for law in self._laws])
+        self._modes, self._varying, self._moments = list[Any](), list[int](), np.empty(0)
+        self._factors = [contact.factors for _, contact, _ in slips]
+        # Compiled when first needed.
+        self._losses_on_any = entry_point(losses_on_any, TABLES, TABLE, TABLE) if slips else None
+        parameters = [parameters_of(one.factors.geometry, one.kinds, one.reference) for _, one, _ in slips]
+        self._tables = tables_of(parameters, [places for *_, places in slips])
+
+    def at(self, t: float) -> list[float]:
+        """Return the distinct powers in W at the current state and the time t (s)."""
+        found: list[float] = self._of_rows(t) if self._laws else []
+        if self._losses_on_any is not None:
+            data = self._data
+            state = data.GetODE2Coordinates(CURRENT, False), data.GetODE2Coordinates_t(CURRENT, False)
+            losses = self._losses_on_any(self._tables, *state).tolist()
+            for factors, (loss, radius, speed, spin) in zip(self._factors, losses, strict=True):
+                found.append(loss * factors.friction_force(t, radius, speed, spin))
+        for power in self._others:
+            found.append(power(self._mbs, t))
+        return found
+
+    def _of_rows(self, t: float) -> list[float]:
+        modes = [law.mode for law in self._laws]
+        if modes != self._modes:
+            varies = [law.constant_forces is None for law in self._laws]
+            self._moments = np.array(
+                [0.0 if vary else -law.moment(0.0, 0.0) for vary, law in zip(varies, self._laws, strict=True)]
+            )
+            self._modes, self._varying = modes, np.flatnonzero(varies).tolist()
+        slips = self._weights.dot(self._data.GetODE2Coordinates_t(CURRENT, False))
+        found: list[float] = (self._moments * slips).tolist()
+        if self._varying:
+            twists = self._twists + self._weights.dot(self._data.GetODE2Coordinates(CURRENT, False))
+            for i in self._varying:
+                found[i] = self._laws[i].lost_power(t, float(twists[i]), float(slips[i]))
+        return found
+
+
 class Works:
     """Integrals of the powers of a model, in ``units`` J; one ``item`` adds them to the coordinates of its nodes."""
 
@@ -68,19 +129,21 @@ class Works:
         """Places of the works among the first-order coordinates."""
         return np.array(self._data.GetObjectLTGODE1(self.item))
 
-    def at(self, t: float) -> list[float]:
-        """Return the powers at the current state and the time t (s), in the units of the works."""
-        if self._evaluated is None:
-            self._evaluated = _Powers(self._mbs, self._powers, self.units)
-        return self._evaluated.at(t)
+    def evaluate(self) -> _Powers:
+        """Prepare the evaluation of the powers until the next assembly."""
+        self._evaluated = _Powers(self._mbs, self._powers, self.units)
+        return self._evaluated
 
     def rates(self, mbs: Any, t: float, item: int, works: Any) -> list[float]:
         """Return the powers (user function of the object, except in implicit runs of ``solve_dynamic``)."""
-        return self.at(t)
+        evaluated = self._evaluated or self.evaluate()
+        powers = evaluated.at(t)
+        return [powers[i] / unit for i, unit in evaluated.copies]
 
     def hold(self, t: float) -> FloatArray:
         """Return the powers, and let Exudyn integrate them until the next call."""
-        powers = np.array(self.at(t))
+        evaluated = self._evaluated or self.evaluate()
+        powers: FloatArray = np.array(evaluated.at(t))[evaluated.which] / evaluated.units
         self._mbs.SetObjectParameter(self.item, "rhsVector", powers)
         return powers
 
@@ -109,66 +172,6 @@ class Works:
             self.running = False
             mbs.SetObjectParameter(self.item, "rhsUserFunction", self.rates)
             mbs.SetObjectParameter(self.item, "rhsVector", [])
-
-
-class _Powers:
-    """Distinct powers of a model until its next assembly, and their copies in ``units`` W.
-
-    The slips of contacts and couplings of rotors are one product of matrices. Their moments are kept until a mode
-    changes, unless they vary within a mode. One compiled call evaluates all other regularised contacts.
-    """
-
-    def __init__(self, mbs: Any, powers: Sequence[Power], units: Sequence[float]) -> None:
-        self._mbs, self._data = mbs, mbs.systemData
-        sources = {power: getattr(getattr(power, "__self__", None), "dissipation", None) for power in powers}
-        known = [(power, *source) for power, source in sources.items() if source is not None]
-        rows = [(power, law, places) for power, law, places in known if isinstance(law, RowLaw)]
-        slips = [(power, one, places) for power, one, places in known if isinstance(one, Contact)]
-        slips = slips if len(slips) > 1 else []  # a single contact costs less by itself
-        together = [power for power, *_ in (*rows, *slips)]
-        self._others = [power for power in sources if power not in together]
-        distinct = together + self._others
-        self._copies = [(distinct.index(power), unit) for power, unit in zip(powers, units, strict=True)]
-        self._laws: list[RowLaw] = [law for _, law, _ in rows]
-        self._weights = np.zeros((len(rows), self._data.ODE2Size()))
-        for weights, (_, law, places) in zip(self._weights, rows, strict=True):
-            weights[places] = law.weights
-        self._twists = np.array([law.twist(0.0 * law.weights) for law in self._laws])
-        self._modes, self._varying, self._moments = list[Any](), list[int](), np.empty(0)
-        self._factors = [contact.factors for _, contact, _ in slips]
-        # Compiled when first needed.
-        self._losses_on_any = entry_point(losses_on_any, TABLES, TABLE, TABLE) if slips else None
-        parameters = [parameters_of(one.factors.geometry, one.kinds, one.reference) for _, one, _ in slips]
-        self._tables = tables_of(parameters, [places for *_, places in slips])
-
-    def at(self, t: float) -> list[float]:
-        """Return all powers at the current state and the time t (s)."""
-        found: list[float] = self._of_rows(t) if self._laws else []
-        if self._losses_on_any is not None:
-            data = self._data
-            state = data.GetODE2Coordinates(CURRENT, False), data.GetODE2Coordinates_t(CURRENT, False)
-            losses = self._losses_on_any(self._tables, *state).tolist()
-            for factors, (loss, radius, speed, spin) in zip(self._factors, losses, strict=True):
-                found.append(loss * factors.friction_force(t, radius, speed, spin))
-        for power in self._others:
-            found.append(power(self._mbs, t))
-        return [found[i] / unit for i, unit in self._copies]
-
-    def _of_rows(self, t: float) -> list[float]:
-        modes = [law.mode for law in self._laws]
-        if modes != self._modes:
-            varies = [law.constant_forces is None for law in self._laws]
-            self._moments = np.array(
-                [0.0 if vary else -law.moment(0.0, 0.0) for vary, law in zip(varies, self._laws, strict=True)]
-            )
-            self._modes, self._varying = modes, np.flatnonzero(varies).tolist()
-        slips = self._weights.dot(self._data.GetODE2Coordinates_t(CURRENT, False))
-        found: list[float] = (self._moments * slips).tolist()
-        if self._varying:
-            twists = self._twists + self._weights.dot(self._data.GetODE2Coordinates(CURRENT, False))
-            for i in self._varying:
-                found[i] = self._laws[i].lost_power(t, float(twists[i]), float(slips[i]))
-        return found
 
 
 def add_works(mbs: Any, powers: Mapping[str, Power], unit: float = 1.0) -> Any:
