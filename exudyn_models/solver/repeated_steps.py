@@ -33,9 +33,9 @@ def changed(settings: Any, **values: Any) -> Iterator[None]:
             setattr(settings, name, value)
 
 
-def newton_without_restart(newton: Any) -> AbstractContextManager[None]:
-    """Make modified Newton renew its Jacobian instead of restarting, for first-order coordinates."""
-    return changed(newton, **WITHOUT_RESTART)
+def newton_without_restart(mbs: Any, newton: Any) -> AbstractContextManager[None]:
+    """Make modified Newton renew its Jacobian instead of restarting, if there are first-order coordinates."""
+    return changed(newton, **WITHOUT_RESTART if mbs.systemData.ODE1Size() else {})
 
 
 @contextmanager

@@ -196,8 +196,7 @@ def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) ->
     if works is not None:
         repairs.enter_context(works.at_step_ends())
     repairs.enter_context(starting_rates(mbs, options.startTime))
-    if mbs.systemData.ODE1Size() > (len(works.names) if works else 0):
-        repairs.enter_context(newton_without_restart(options.newton))
+    repairs.enter_context(newton_without_restart(mbs, options.newton))
     repairs.enter_context(peaks_resolved(mbs, options))
     if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
         repairs.enter_context(restored_accelerations(mbs))
