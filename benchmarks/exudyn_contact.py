@@ -3,11 +3,11 @@
 Run with ``python benchmarks/exudyn_contact.py``; prints tables. Each number is the least of several repetitions,
 interleaved so that other load affects all rows equally. Compare only numbers of one run.
 
-Calls of friction, in empty calls of a user function: two rotors on one axis 0.1, with a function of time or static
-friction 1.9, with a table 2.3; pin 1.1, six points 1.3, 24 points 1.4; Exudyn's built-in contact with a pin 1.1, six
-points 6.4, 24 points 26; ring 1.2, annulus 1.6, ring between spatial bodies 2.6; ring with a load of time 2.3, with
-Stribeck friction too 3.4; ring with a heat sensor 4.9, on two rotors 1.9, with an energy balance 2.0; Exudyn's
-spring-damper 0.1, six rigid-body spring-dampers 4.1.
+Calls of friction, in empty calls of a user function: two rotors on one axis 0.1, with a function of time 0.6, with
+static friction 1.9, with a table 2.4; pin 1.1, six points 1.3, 24 points 1.4; Exudyn's built-in contact with a pin
+1.1, six points 6.4, 24 points 26; ring 1.2, annulus 1.6, ring between spatial bodies 2.6; ring with a load of time
+2.4, with Stribeck friction too 3.5; ring with a heat sensor 5.8, on two rotors 2.7, with an energy balance 2.7;
+Exudyn's spring-damper 0.1, six rigid-body spring-dampers 4.1.
 
 Alternatives for the call, in the same unit: numba's dispatch by type, 1.9 for a ring; a C callback through ctypes,
 2.0 for a pin; a NumPy array in place of the list of forces, 0.15 more; Exudyn's symbolic functions, 1.0 for a pin,

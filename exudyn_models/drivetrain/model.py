@@ -22,7 +22,7 @@ from exudyn_models.parts.rotational.torques import Torque, add_torque
 from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.solver_run import quiet
-from exudyn_models.solver.starting_rates import Power
+from exudyn_models.solver.works import Power
 from reference_model.systems import (
     FloatArray,
     checked_tolerance,

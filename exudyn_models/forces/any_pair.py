@@ -1,6 +1,7 @@
 """Friction on any pair of nodes: generalised forces by the transposed slip Jacobian, and their derivatives."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from exudyn_models.forces.friction_laws import (
     friction_of_slip,
     slip_potential_of_contact,
 )
-from exudyn_models.forces.jit import KeptOnDisk, as_arrays, compiled
+from exudyn_models.forces.jit import LONGEST, KeptOnDisk, as_arrays, compiled
 from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, SIZES, Kinds, slip_and_place
 from reference_model.systems import FloatArray
 
@@ -20,6 +21,7 @@ Parameters = FloatArray
 """A ``Contact``, ``Kinds`` and reference coordinates in one table."""
 
 KINDS_AT, REFERENCE_AT = CONTACT_SIZE, CONTACT_SIZE + 3
+PLACES_AT = REFERENCE_AT + LONGEST
 
 
 def parameters_of(contact: Contact, kinds: Kinds, reference: FloatArray) -> Parameters:
@@ -239,6 +241,41 @@ def slip_in_step(
         spin,
         math.sqrt(x * x + y * y),
     )
+
+
+@compiled
+def losses_on_any(tables: FloatArray, q: FloatArray, q_t: FloatArray) -> FloatArray:
+    """Return for each contact its lost power (W) and the results of ``slip_on_any``, shape (k, 4).
+
+    ``tables`` are those of ``tables_of``; ``q`` and ``q_t`` of the model exclude reference values.
+    """
+    result = np.empty((len(tables), 4))
+    for i in range(len(tables)):
+        contact, kinds = contact_of(tables[i])
+        size = SIZES[kinds[0]] + SIZES[kinds[1]]
+        coordinates, velocities = np.empty(size), np.empty(size)
+        for k in range(size):
+            place = int(tables[i, PLACES_AT + k])
+            coordinates[k] = tables[i, REFERENCE_AT + k] + q[place]
+            velocities[k] = q_t[place]
+        to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
+        ux, uy, spin = slip_of_nodes(to_slip, velocities)
+        angle = math.atan2(sine, cosine)
+        fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
+        result[i, 0] = -(fx * ux + fy * uy + moment * spin)
+        result[i, 1] = math.sqrt(x * x + y * y)
+        result[i, 2] = slip_potential_of_contact(ux, uy, spin, angle, contact)
+        result[i, 3] = spin
+    return result
+
+
+def tables_of(parameters: Sequence[Parameters], places: Sequence[Sequence[int]]) -> FloatArray:
+    """Return parameters of contacts, and the places of their coordinates in the model, as rows of one array."""
+    tables = np.zeros((len(parameters), PLACES_AT + LONGEST))
+    for table, row, own in zip(tables, parameters, places, strict=True):
+        table[: len(row)] = row
+        table[PLACES_AT : PLACES_AT + len(own)] = own
+    return tables
 
 
 change_of_slip = KeptOnDisk(slip_in_step)

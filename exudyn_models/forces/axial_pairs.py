@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
 from operator import mul
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -60,6 +60,36 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
         return -by_spin * (np.ones((1, 1)) if grounded else np.array([[1.0, -1.0], [-1.0, 1.0]]))
 
     return force, jacobian
+
+
+OF_TIME = (
+    "lambda mbs, t, item, twist, spin, stiffness, damping, offset: "
+    "({limit} if spin > {fastest} else -{limit} if spin < -{fastest} else {limit} * (spin / {fastest})) * "
+    "(factor if (factor := function(t)).__class__ is float and 0.0 <= factor < 1e400 else checked(factor, t))"
+)
+"""Moment of friction that depends on time only; with literal numbers it is as fast as a function for one contact."""
+
+
+def resistance_on_axis(factors: LoadAndCoefficient) -> Callable[..., float]:
+    """Return the moment against the spin, as a user function of ``ObjectConnectorCoordinateSpringDamper``."""
+    radius, epsilon = mean_radius(factors.geometry), factors.geometry[3]
+    if factors.of_time is not None:
+        constant, law = factors.of_time
+        source = OF_TIME.format(limit=radius * constant, fastest=epsilon / radius)
+        names = {
+            "function": law.function,
+            "checked": lambda factor, t: law.checked(factor, t, math.nan, math.nan, math.nan),
+        }
+        return cast(Callable[..., float], eval(source, names))
+
+    def resistance(
+        mbs: Any, t: float, item: int, twist: float, spin: float, stiffness: Any, damping: Any, offset: Any
+    ) -> float:
+        speed = radius * abs(spin)
+        friction = factors.friction_force(t, 0.0, speed, spin)
+        return math.copysign(radius * friction * min(1.0, speed / epsilon), spin)
+
+    return resistance
 
 
 def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, float] | None:
@@ -224,7 +254,7 @@ class RowLaw:
 
     def lost_power(self, t: float, twist: float, rate: float) -> float:
         """Return the lost power in W."""
-        return -self.moment_and_friction(t, twist, rate)[1] * rate
+        return -self.moment(t, rate) * rate if self.slides else 0.0
 
     def energy(self, twist: float) -> float:
         """Return the stored energy in J."""
@@ -343,10 +373,9 @@ class AxialStick(RowLaw):
 
     def moment(self, t: float, spin: float) -> float:
         """Return the moment in N m on the disc, without the moment of the constraint."""
-        if not self.slides:
-            return 0.0
-        direction = int(self.mode or 0)
-        return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
+        if self.mode == Mode.FORWARD:
+            return -self.sliding_moment(t, max(spin, AT_REST))
+        return self.sliding_moment(t, min(spin, -AT_REST)) if self.mode == Mode.BACKWARD else 0.0
 
     def jacobian(
         self,

@@ -56,6 +56,9 @@ FLOATS = FloatsType()
 TABLE: Any = _types.float64[::1]
 """A contiguous array of floats."""
 
+TABLES: Any = _types.float64[:, ::1]
+"""A contiguous array of floats of two dimensions."""
+
 
 @extending.register_model(FloatsType)
 class _FloatsModel(extending.models.StructModel):  # type: ignore[misc]

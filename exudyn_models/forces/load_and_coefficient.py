@@ -99,6 +99,13 @@ class LoadAndCoefficient:
             return self.geometry
         return _with(self.geometry, self.friction_force(t, math.nan, math.nan, math.nan))
 
+    @property
+    def of_time(self) -> tuple[float, LawFunction] | None:
+        """A number and a function of time whose product is μN, or None if it is not such a product."""
+        if len(self._factors) == 1 and self._factors[0].arguments == ("time",):
+            return self._constant, self._factors[0]
+        return None
+
     def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
         """Return the friction force μN in N of all plates for a motion as in ``ARGUMENTS``."""
         force = self._constant
@@ -146,7 +153,9 @@ def _coefficient(value: Coefficient) -> float | LawFunction:
 
 
 def _of_slip_speed(coefficient: Callable[[float], float]) -> LawFunction:
-    return LawFunction("friction_coefficient", "", ("slip_speed",), lambda t, r, v, s: coefficient(v))
+    return LawFunction(
+        "friction_coefficient", "", ("slip_speed",), lambda t, r, v, s: coefficient(v), coefficient
+    )
 
 
 def _number_or_function(name: str, value: NumberOrFunction, unit: str) -> float | LawFunction:

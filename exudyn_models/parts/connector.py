@@ -4,18 +4,22 @@ In general this is a massless ``ObjectGenericODE2``. A force F on the disc comes
 master at the distance d. Exudyn's marker connectors omit that moment and so do not conserve angular momentum.
 
 Rotors on one axis have no such moment. Under a constant load they use ``ObjectConnectorCoordinateSpringDamperExt``
-with the law of ``axial_pairs``, which takes a fraction of the time of a Python function.
+with the law of ``axial_pairs``, which takes a fraction of the time of a Python function. Under a load of time, it is
+``ObjectConnectorCoordinateSpringDamper``, whose user function costs less than half.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import constant_law
+from exudyn_models.forces.axial_pairs import constant_law, resistance_on_axis
 from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
 from exudyn_models.solver.contacts import Contact, register
 from exudyn_models.solver.items import coordinate_marker, items
+
+BUILT_IN = "ConnectorCoordinateSpringDamperExt"
+"""Exudyn's connector with the law of constant friction."""
 
 
 def add_connector(
@@ -45,11 +49,11 @@ def add_friction_connector(mbs: Any, nodes: Sequence[Any], contact: Contact) -> 
         return add_connector(
             mbs, nodes, contact.functions["force"], contact.functions["jacobian"], contact.name
         )
-    markers = rotor_markers(mbs, nodes)
+    options = {"name": contact.name, "markerNumbers": rotor_markers(mbs, nodes)}
     item = mbs.AddObject(
-        items.ObjectConnectorCoordinateSpringDamperExt(
-            name=contact.name, markerNumbers=markers, frictionProportionalZone=1.0
-        )
+        items.ObjectConnectorCoordinateSpringDamperExt(frictionProportionalZone=1.0, **options)
+        if constant_law(contact.kinds, contact.factors)
+        else items.ObjectConnectorCoordinateSpringDamper(**options)
     )
     renew_friction(mbs, item, contact)
     return item
@@ -61,18 +65,15 @@ def renew_friction(mbs: Any, item: Any, contact: Contact) -> None:
         for name, function in contact.functions.items():
             mbs.SetObjectParameter(item, f"{name}UserFunction", function)
         return
-    law = constant_law(contact.kinds, contact.factors)
-    resistance = 0 if law else _resistance(contact.functions["force"], len(contact.reference))
-    mbs.SetObjectParameter(item, "springForceUserFunction", resistance)
-    if law:
-        moment, spin = law
-        mbs.SetObjectParameter(item, "dynamicFrictionForce", moment)
-        mbs.SetObjectParameter(item, "frictionProportionalZone", spin)
-
-
-def _resistance(force: ForceFunction, size: int) -> Callable[..., float]:
-    others = [0.0] * (size - 1)
-    return lambda mbs, t, item, twist, spin, *_: -force(mbs, t, item, [*others, twist], [*others, spin])[-1]
+    law, resistance = constant_law(contact.kinds, contact.factors), resistance_on_axis(contact.factors)
+    if mbs.GetObject(item)["objectType"] != BUILT_IN:
+        mbs.SetObjectParameter(item, "springForceUserFunction", resistance)
+    elif law is None:
+        mbs.SetObjectParameter(item, "springForceUserFunction", lambda *arguments: resistance(*arguments[:8]))
+    else:
+        mbs.SetObjectParameter(item, "springForceUserFunction", 0)
+        mbs.SetObjectParameter(item, "dynamicFrictionForce", law[0])
+        mbs.SetObjectParameter(item, "frictionProportionalZone", law[1])
 
 
 def rotor_markers(mbs: Any, nodes: Sequence[Any]) -> list[Any]:

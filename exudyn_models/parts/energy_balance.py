@@ -7,6 +7,7 @@ along with all coordinates, so works are as accurate as the motion.
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from typing import Any, TypeAlias
 
 import exudyn as exu
@@ -14,7 +15,7 @@ import numpy as np
 
 from exudyn_models.solver.items import IN_MEMORY, at_assembly, items, node_sensor
 from exudyn_models.solver.solver_run import quiet
-from exudyn_models.solver.starting_rates import Power, add_works
+from exudyn_models.solver.works import Power, add_works
 from reference_model.systems import FloatArray, positive_number, require_callable, require_kind, shown
 
 Energy: TypeAlias = Callable[[Any], float]
@@ -146,7 +147,8 @@ def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
         if not bodies:  # they have outputs only after assembly
             bodies[:] = _bodies(mbs)
-        return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
+        kinetic = map(mbs.GetObjectOutputBody, bodies, repeat(exu.OutputVariableType.KineticEnergy))
+        return [float(sum(kinetic)) + sum(spring(mbs) for spring in stored)]
 
     return mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **IN_MEMORY))
 
@@ -190,15 +192,15 @@ def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
 
 
 def _bodies(mbs: Any) -> list[int]:
+    """Return the objects with a kinetic energy, without the massless connectors of this package."""
     found = []
     for item in range(mbs.systemData.NumberOfObjects()):
         try:
-            _kinetic_energy(mbs, item)
+            mbs.GetObjectOutputBody(item, exu.OutputVariableType.KineticEnergy)
         except exu.ExudynError:  # grounds and connectors
             continue
-        found.append(item)
+        body = mbs.GetObject(item)
+        mass = body.get("massMatrix")
+        if mass is None or body["massMatrixUserFunction"] or mass.Convert2DenseMatrix().any():
+            found.append(item)
     return found
-
-
-def _kinetic_energy(mbs: Any, body: int) -> float:
-    return float(mbs.GetObjectOutputBody(body, exu.OutputVariableType.KineticEnergy))

@@ -9,17 +9,17 @@ from typing import Any, Literal, cast, get_args
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, RowLaw, constant_law, on_one_axis
+from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, SLIDING, RowLaw, constant_law, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
-from exudyn_models.solver.contacts import Contact, motion_of, places_of, present_item
+from exudyn_models.solver.contacts import Contact, coordinates_of, motion_of, places_of, present_item
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, items, node_sensor
-from exudyn_models.solver.starting_rates import add_works
 from exudyn_models.solver.stick.point_sticks import PointSticks
+from exudyn_models.solver.works import add_works
 from reference_model.systems import FloatArray, require_choice
 
 Quantity = Literal[
@@ -102,6 +102,14 @@ class RingFriction:
         force, jacobian = force_and_jacobian(contact.kinds, contact.reference, factors)
         contact.functions.update(force=force, jacobian=jacobian)
         renew_friction(self.mbs, present_item(self.mbs, contact, self.item), contact)
+
+    @property
+    def dissipation(self) -> tuple[RowLaw | Contact, list[int]] | None:
+        """Law or contact that determines ``power`` for ``Works``, and the places of its coordinates."""
+        contact, stick = self._contact, self._contact.stick
+        if stick is None and not on_one_axis(contact.kinds, contact.factors):
+            return contact, coordinates_of(self.mbs, contact, self.item)
+        return (stick, coordinates_of(self.mbs, contact, self.item)) if stick and len(stick.weights) else None
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
@@ -197,20 +205,18 @@ class RingFriction:
             spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
             return moment * (spin if spin > creep else spin * spin / creep)
 
-        stick, last = contact.stick, (second or first).stop - 1
-
-        def of_stick(t: float) -> float:
-            if stick is None or not stick.slides:
-                return 0.0
-            velocities = get_velocities(CURRENT, False)
-            spin: float = velocities.item(last) - (velocities.item(master) if pair else 0.0)
-            return -stick.moment(t, spin) * spin
+        stick = contact.stick
+        weights: list[float] = [] if stick is None else stick.weights.tolist()
 
         def of_any(t: float) -> float:
+            if stick is not None and stick.visible_mode not in SLIDING:
+                return 0.0
             values = get_velocities(CURRENT, False)
             velocities = values[first].tolist()
             if second:
                 velocities += values[second].tolist()
+            if stick is not None and weights:
+                return stick.lost_power(t, 0.0, sum(map(mul, weights, velocities)))
             coordinates = velocities  # ignored by rotors on one axis
             if not on_axis:
                 values = get_coordinates(CURRENT, False)
@@ -219,8 +225,7 @@ class RingFriction:
                     coordinates += values[second].tolist()
             return -float(sum(map(mul, force(mbs, t, 0, coordinates, velocities), velocities)))
 
-        of_law = of_stick if stick is not None and on_axis else of_any
-        contact.power = of_constant_moment if law and not second else of_law  # at half the cost
+        contact.power = of_constant_moment if law and not second else of_any  # at half the cost
         return contact.power
 
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:

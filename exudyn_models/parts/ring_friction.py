@@ -36,8 +36,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, AxialStick, constant_law
-from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
+from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, AxialStick, on_one_axis
+from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, mean_radius
 from exudyn_models.forces.friction_laws import Contact as Geometry
 from exudyn_models.forces.laws.places import places_in, ring_places, table_of
 from exudyn_models.forces.laws.pressures import Pressure, density_of
@@ -223,7 +223,8 @@ def _add_friction(
 def _regularised(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> Contact:
     force, jacobian = force_and_jacobian(kinds, reference, factors)
     functions = {"force": force, "jacobian": jacobian}
-    return Contact(kinds, reference, factors, functions, None, constant_law(kinds, factors) is not None)
+    turns = on_one_axis(kinds, factors) and mean_radius(factors.geometry) > 0.0
+    return Contact(kinds, reference, factors, functions, None, turns and not factors.depends_on_motion)
 
 
 def _pins(mbs: Any, sides: tuple[Side, Side], kinds: Kinds, factors: LoadAndCoefficient) -> list[Kinds]:

@@ -57,7 +57,7 @@ class Contact(Lockable):
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
-    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
+    contacts are Exudyn's coordinate connectors.
     """
 
     kinds: Kinds
@@ -99,6 +99,11 @@ def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
         runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
         connector.places = [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
     return connector.places
+
+
+def coordinates_of(mbs: Any, connector: Connector, item: Any) -> list[int]:
+    """Return the places of the coordinates of a connector, as in ``places_of``."""
+    return [place for own in places_of(mbs, connector, item) for place in range(own.start, own.stop)]
 
 
 def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:

@@ -39,7 +39,7 @@ from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
-from exudyn_models.solver.starting_rates import starting_rates, works_at_step_ends
+from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.stick.sticking_contacts import (
     ModeChange,
     StickingContact,
@@ -47,6 +47,7 @@ from exudyn_models.solver.stick.sticking_contacts import (
     sticking_contacts,
 )
 from exudyn_models.solver.stick.switching import run_switching
+from exudyn_models.solver.works import works_of
 from reference_model.systems import require_flag, require_kind
 from reference_model.trajectory import SimulationError, StepCount
 
@@ -194,7 +195,9 @@ def _solve(
 
 
 def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) -> None:
-    repairs.enter_context(works_at_step_ends(mbs))
+    works = works_of(mbs)
+    if works is not None:
+        repairs.enter_context(works.at_step_ends())
     repairs.enter_context(starting_rates(mbs, options.startTime))
     repairs.enter_context(newton_without_restart(mbs, options.newton))
     repairs.enter_context(peaks_resolved(mbs, options))

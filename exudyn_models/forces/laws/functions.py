@@ -20,13 +20,14 @@ ARGUMENTS = {"time": "s", "radius": "m", "slip_speed": "m/s", "relative_spin": "
 class LawFunction:
     """A coefficient or load that is a function of some ``arguments``; ``unit`` is the unit of its result.
 
-    ``of_motion`` takes all ``ARGUMENTS``, and its result is not checked.
+    ``of_motion`` takes all ``ARGUMENTS``, ``function`` only its own. Their results are not checked.
     """
 
     name: str
     unit: str
     arguments: tuple[str, ...]
     of_motion: Callable[[float, float, float, float], float]
+    function: Callable[..., float]
 
     def checked(self, result: object, *motion: float) -> float:
         """Return a result as a float; raise ``ValueError`` with the ``motion`` unless it is finite and >= 0."""
@@ -50,7 +51,11 @@ def law_function(name: str, function: Callable[..., float], unit: str) -> LawFun
             ) from error
     by_name = ", ".join(f"{argument}={argument}" for argument in arguments)
     of_motion = eval(f"lambda {', '.join(ARGUMENTS)}: function({by_name})", {"function": function})
-    return LawFunction(name, unit, arguments, of_motion)
+    parameters = list(inspect.signature(function).parameters.values())[: len(arguments)]
+    by_position = [one.name for one in parameters if one.kind == one.POSITIONAL_OR_KEYWORD]
+    if by_position != list(arguments):
+        function = eval(f"lambda {', '.join(arguments)}: function({by_name})", {"function": function})
+    return LawFunction(name, unit, arguments, of_motion, function)
 
 
 def checked_not_negative(name: str, value: float, unit: str) -> float:

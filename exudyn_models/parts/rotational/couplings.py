@@ -15,11 +15,11 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import RowLaw
 from exudyn_models.parts.connector import add_connector
-from exudyn_models.solver.contacts import Coupling, motion_of, register
+from exudyn_models.solver.contacts import Coupling, coordinates_of, motion_of, register
 from exudyn_models.solver.items import CURRENT, IN_MEMORY, items, node_sensor
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import MeshLaw
-from exudyn_models.solver.starting_rates import add_works
+from exudyn_models.solver.works import add_works
 from reference_model.systems import FloatArray, require_choice, require_kind, shown
 
 FREEDOMS = ("1D", "Point2D", "Point", "RigidBody2D", "RigidBodyRotVecLG", "RigidBodyRxyz", "RigidBodyEP")
@@ -78,6 +78,11 @@ class RotorCoupling:
         law = None if isinstance(self._law, Backlash) else self._law
         now = partial(self.mbs.systemData.GetTime, CURRENT)
         return law, lambda: self._law.moment_and_friction(now(), *self._motion())[0]
+
+    @property
+    def dissipation(self) -> tuple[RowLaw, list[int]]:
+        """Law that determines ``power`` for ``Works``, and the places of its coordinates."""
+        return self._law, coordinates_of(self.mbs, self._coupling, self.item)
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the lost power in W, in the form that ``add_energy_balance`` expects."""

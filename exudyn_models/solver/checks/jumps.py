@@ -5,14 +5,13 @@ step, but hardly changes in its neighbours, indicates a load jump or motion that
 """
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from exudyn_models.solver.works import works_of
 from reference_model.systems import FloatArray
-
-_NAMES = "names_of_powers"
 
 NEIGHBOURS = 2
 """Number of steps on each side to compare a jump with."""
@@ -24,11 +23,6 @@ LEAST = 0.02
 """Smallest reported jump, as a share of the largest power of the run."""
 
 
-def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 1.0) -> None:
-    """Register the results of ``rates`` as powers in ``unit`` W to be checked."""
-    setattr(rates, _NAMES, tuple((name, unit) for name in names))
-
-
 TOGETHER = 4096
 """Number of steps that are checked together."""
 
@@ -37,7 +31,10 @@ class JumpCheck:
     """Checks the powers of a model in an implicit run."""
 
     def __init__(self, mbs: Any) -> None:
-        self.names, self._units, self._places = _powers(mbs)
+        works = works_of(mbs)
+        self.names = works.names if works else []
+        self._units = np.array(works.units if works else [])
+        self._places = works.places if works else np.empty(0, dtype=int)
         self._times: list[float] = []
         self._rates: list[FloatArray] = []
         self._largest = 0.0
@@ -93,17 +90,3 @@ class JumpCheck:
             RuntimeWarning,
             stacklevel=5,
         )
-
-
-def _powers(mbs: Any) -> tuple[list[str], FloatArray, list[int]]:
-    """Return names, units (W) and indices of the registered powers."""
-    found: list[tuple[str, float]] = []
-    places: list[int] = []
-    objects = mbs.systemData.NumberOfObjects() if mbs.systemData.ODE1Size() else 0
-    for item in range(objects):
-        rates = mbs.GetObject(item).get("rhsUserFunction")
-        own = getattr(rates["function"], _NAMES, ()) if isinstance(rates, dict) else ()
-        if own:
-            found += own
-            places += [int(place) for place in mbs.systemData.GetObjectLTGODE1(item)]
-    return [name for name, _ in found], np.array([unit for _, unit in found]), places

@@ -191,7 +191,7 @@ class _Run:
     def _settle(self, before: Sequence[Mode]) -> None:
         """Choose the modes after those ``before``."""
         self._modes.settle(self._reached)
-        renew_rates(self._mbs, self._modes.solver)
+        renew_rates(self._mbs, self._reached, self._modes.solver)
         self._renew_jacobian()
         self._note(before)
         for rows in self._rows:

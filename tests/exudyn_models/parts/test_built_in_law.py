@@ -1,4 +1,6 @@
-"""Friction of rotors under a constant load: Exudyn's own spring-damper has the law of the user functions."""
+"""Friction of rotors on Exudyn's own coordinate connectors equals the law of the general connector."""
+
+from functools import partial
 
 import exudyn as exu
 import numpy as np
@@ -9,13 +11,22 @@ from exudyn_models import add_ring_friction, largest_stable_step, solve_dynamic
 
 SOLVERS = exu.DynamicSolverType
 LOAD, EPSILON = 500.0, 1e-2
-BUILT_IN, USER_FUNCTION = "ConnectorCoordinateSpringDamperExt", "GenericODE2"
+BUILT_IN, OF_TIME, USER_FUNCTION = (
+    "ConnectorCoordinateSpringDamperExt",
+    "ConnectorCoordinateSpringDamper",
+    "GenericODE2",
+)
 RING = {"contact_radius": 0.12}
 WORN = {"inner_radius": 0.05, "outer_radius": 0.12, "pressure": "wear"}
 
 
 def in_python(time):
     """Return the same load, as a function."""
+    return LOAD
+
+
+def of_slip(slip_speed):
+    """Return the same load, as a function of the motion."""
     return LOAD
 
 
@@ -55,10 +66,15 @@ def end_of(load, grounded, solver, **contact):
     ],
 )
 def test_motion_and_heat_equal_the_user_function_to_rounding(solver, grounded, geometry):
-    built_in, first = end_of(LOAD, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
-    by_function, second = end_of(in_python, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
-    assert (first, second) == (BUILT_IN, USER_FUNCTION)
-    np.testing.assert_allclose(built_in, by_function, rtol=1e-11, atol=1e-11)
+    ends, kinds = zip(
+        *(
+            end_of(load, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
+            for load in (LOAD, in_python, of_slip)
+        ),
+        strict=True,
+    )
+    assert kinds == (BUILT_IN, OF_TIME, USER_FUNCTION)
+    np.testing.assert_allclose(ends[:2], [ends[2]] * 2, rtol=1e-11, atol=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -96,12 +112,32 @@ def test_the_load_may_become_a_function_and_a_number_again():
         assert mbs.GetSensorValues(spin) == pytest.approx(speed, rel=1e-11), part
 
 
-def test_an_invalid_load_after_a_change_is_reported_with_its_time():
-    mbs, _, contact = braked(LOAD, True)
-    contact.change(normal_load=lambda time: -1.0)
-    with pytest.raises(exu.ExudynError, match="normal_load") as error:
+@pytest.mark.parametrize("load", [LOAD, in_python], ids=["number", "function"])
+@pytest.mark.parametrize("result", [-1.5, np.inf, np.nan, True, None, np.ones(1)], ids=str)
+def test_an_invalid_load_after_a_change_is_reported_with_its_time(load, result):
+    mbs, _, contact = braked(load, True)
+    contact.change(normal_load=lambda time: result if time > 0.05 else 1.0)
+    with pytest.raises(exu.ExudynError, match=r"normal_load\(time = 0.0[56].* s\) = ") as error:
         solve_dynamic(mbs, settings_of(0.1, 10), SOLVERS.RK44)
-    assert "-1" in str(error.value)
+    assert str(result) in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        lambda *, time: LOAD * (1.0 + time),
+        partial(lambda factor, time: factor * (1.0 + time), LOAD),
+        partial(lambda time, factor: factor * (1.0 + time), factor=LOAD),
+        lambda time: np.float64(LOAD * (1.0 + time)),
+        lambda time: int(LOAD) + LOAD * time,
+    ],
+    ids=["by name", "first argument given", "second argument given", "NumPy", "sum"],
+)
+def test_any_function_of_time_may_be_a_load(load):
+    mbs, disc, contact = braked(load, True, speed := 200.0)
+    solve_dynamic(mbs, settings_of(0.1, 10), SOLVERS.RK44)
+    assert kind_of(contact) == OF_TIME
+    assert rate_of(mbs, disc) == pytest.approx(speed - 0.3 * LOAD * 0.12 * (0.1 + 0.005) / 0.9, rel=1e-12)
 
 
 @pytest.mark.parametrize("spin", [0.0, 20.0, EPSILON / 0.12])
