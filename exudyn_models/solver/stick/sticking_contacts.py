@@ -277,7 +277,7 @@ class PlanarContact(StickingContact):
     def share_bound(self, forces: FloatArray, limit: float) -> float:
         """Return a bound of this share: the limit surface contains the hull of forces alone and moments alone."""
         x, y, *rim = forces.tolist()
-        return (math.hypot(x, y) + abs(sum(rim))) / limit
+        return float(math.hypot(x, y) + abs(sum(rim))) / limit
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion, and store its radius for the capacity in stick."""
