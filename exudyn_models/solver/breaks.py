@@ -36,13 +36,16 @@ Controller = Callable[[Any, float], object]
 TOGETHER = 1e-9
 """Largest distance of two breaks that count as one, as a share of the run."""
 
+MOST_SAMPLES = 10_000_000
+"""Largest number of samples of one controller in a run; their list takes about 1 GB."""
+
 
 def with_samples(
     breaks: Sequence[float], sampled: Mapping[float, Controller], options: Any
 ) -> dict[float, list[Controller]]:
     """Return the functions to call at the start of the run and at all breaks, by increasing time in s.
 
-    Raises ``ValueError`` if a period is not > 0, or ``TypeError`` if a function has other arguments.
+    Raises ``ValueError`` if a period is not > 0 or too short, or if a function has other arguments.
     """
     require_kind("sampled", sampled, Mapping)
     start, end = options.startTime, options.endTime
@@ -51,6 +54,10 @@ def with_samples(
         period = positive_number("sampled", period, "s")
         require_callable(f"sampled[{period:g}]", function, "mbs", "t")
         count = math.ceil((end - start) / period * (1.0 - TOGETHER))
+        if count > MOST_SAMPLES:
+            raise ValueError(
+                f"sampled = {period:g} s: the run would take {count:g} samples; use a longer period"
+            )
         calls += [(start + k * period, function) for k in range(count)]
     result: dict[float, list[Controller]] = {}
     last = -math.inf

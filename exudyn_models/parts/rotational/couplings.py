@@ -120,6 +120,8 @@ def freedoms_of(mbs: Any, **rotors: Any) -> list[Freedom | None]:
         if freedom is not None and freedom in found:
             raise ValueError(f"{name} = {shown(rotor)}: a coupling is between different rotors")
         found.append(freedom)
+    if len(found) > 1 and not any(found):
+        raise ValueError(f"{' = '.join(rotors)} = None: at least one must be a rotor, not the ground")
     return found
 
 

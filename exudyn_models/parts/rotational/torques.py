@@ -117,7 +117,14 @@ def add_torque(mbs: Any, rotor: Any, torque: Torque) -> RotorTorques:
     ``rotor`` is one of ``add_gear``, or a slider for a force. ``torque_table`` and ``four_cylinder`` return torques.
     """
     require_callable("torque", torque, "time", "angle", "speed")
-    return add_torques(mbs, lambda t, angles, speeds: [torque(t, angles[0], speeds[0])], rotor=rotor)
+
+    def torques(t: float, angles: Floats, speeds: Floats) -> Sequence[float]:
+        found = torque(t, angles[0], speeds[0])
+        if not np.isfinite(found):
+            raise ValueError(f"torque({t:g}, {angles[0]:g}, {speeds[0]:g}) = {found:g}: it must be finite")
+        return [found]
+
+    return add_torques(mbs, torques, rotor=rotor)
 
 
 def torque_table(
@@ -133,6 +140,8 @@ def torque_table(
     speeds, full, idle = rows[:, 0], rows[:, 1], rows[:, 2] if rows.shape[1] == 3 else np.zeros(len(rows))
     if not callable(throttle):
         throttle = finite_number("throttle", throttle)
+        if not 0.0 <= throttle <= 1.0:
+            raise ValueError(f"throttle = {throttle:g}: it must be from 0 to 1")
 
     def torque(time: float, angle: float, speed: float) -> float:
         least, most = np.interp(speed, speeds, idle), np.interp(speed, speeds, full)

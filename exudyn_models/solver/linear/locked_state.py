@@ -145,8 +145,8 @@ def linearise(mbs: Any) -> Linearisation:
     their static friction is as small as possible. Contacts between the same bodies then carry it in proportion to
     their static friction.
 
-    Constraint forces count with the turn of their directions (a pendulum has the stiffness of its weight). Loads of
-    user functions count as constant, and so do the directions of constraints that the present velocities turn.
+    Constraint forces count with the turn of their directions (a pendulum has the stiffness of its weight), and small
+    motions turn with constraints that turn. Loads of user functions count as constant.
     First-order coordinates, such as heat and work, do not count. The model is assembled if necessary, and
     its state stays unchanged.
 
@@ -283,11 +283,29 @@ def _about_initial_values(
         dynamics.evaluate(t)
         return dynamics.gradients
 
+    rates, moved = dynamics.coordinate_rates(), np.zeros((data.AEsize(), len(q)))
     for i, change in enumerate(TURN * np.eye(len(q))):
         turned = (gradients(q + change) - gradients(q - change)) / (2.0 * TURN)
         stiffness[:, i] += turned.T @ forces
+        moved += turned * rates[i]
     constraints = gradients(q)
     reactions, active = constraints.copy(), constraints.any(axis=1)
     for item, places, turn in turns:
         reactions[data.GetObjectLTGAE(item)[0], places] += turn
+    stiffness += _stiffness_of_turn(mass, damping, constraints, reactions, moved)
     return Linearisation(t, mass, damping, stiffness, constraints[active], reactions[active], states)
+
+
+def _stiffness_of_turn(
+    mass: FloatArray, damping: FloatArray, constraints: FloatArray, reactions: FloatArray, rates: FloatArray
+) -> FloatArray:
+    """Return the stiffness due to the ``rates`` of constraints that turn as the model moves.
+
+    Small motions x = Z·y turn with them: J·Ż = −J̇·Z. Their axes do not turn among themselves, so Yᵀ·M·Ż = 0 with
+    R·Y = 0. The rate of this equation is Yᵀ·M·Z̈ = −Ẏᵀ·M·Ż. The stiffness Yᵀ·(M·Z̈ + D·Ż) of y cancels the centrifugal
+    force in the reactions.
+    """
+    size, count = len(mass), len(rates)
+    system = np.block([[mass, reactions.T], [constraints, np.zeros((count, count))]])
+    found = np.linalg.lstsq(system, np.vstack((np.zeros((size, size)), rates)), rcond=None)[0]
+    return np.asarray(rates.T @ found[size:] - damping @ found[:size])

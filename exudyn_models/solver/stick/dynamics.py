@@ -77,7 +77,7 @@ class Dynamics:
     def _prescribed_rates(self, t: float) -> FloatArray:
         """Return c, from the slips of all constraints a little later at the present velocities."""
         data = self._data
-        q, velocities = data.GetODE2Coordinates(), self._coordinate_rates()
+        q, velocities = data.GetODE2Coordinates(), self.coordinate_rates()
         slips = []
         for i in range(4):
             data.SetODE2Coordinates(q + i * self.difference * velocities)
@@ -122,7 +122,7 @@ class Dynamics:
             return np.zeros(self._size)
         return self.inverse[: self._size, self._size :] @ -slips
 
-    def _coordinate_rates(self) -> FloatArray:
+    def coordinate_rates(self) -> FloatArray:
         """Return the derivatives of the coordinates, which differ from the velocities for rotation vectors."""
         q, rates = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
         for places, reference in self._rotations:

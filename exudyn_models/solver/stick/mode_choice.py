@@ -83,12 +83,15 @@ class ModeChoice:
         self._varying = [i for i, contact in enumerate(contacts) if contact.stick.constant_forces is None]
 
     def begin(self, t: float) -> None:
-        """Let velocities satisfy all joints, by an impact without friction."""
+        """Let velocities satisfy all joints and one-way clutches, by an impact without friction."""
         self._data.SetAECoordinates(self._data.GetAECoordinates(exu.ConfigurationType.Initial))
         self._dynamics.evaluate(t)
         change = self._dynamics.violation()
         if change.any():
             self._data.SetODE2Coordinates_t(self._data.GetODE2Coordinates_t() + change)
+        if self._one_way:
+            self._dynamics.evaluate(t, self._locks)
+            Slips(self._mbs, self._dynamics, [self._contacts[i] for i in self._one_way]).collide()
 
     @property
     def solver(self) -> Any:
@@ -101,20 +104,21 @@ class ModeChoice:
         return [group.contacts for group in self._resting.groups]
 
     def take_back(self, t: float) -> None:
-        """Subtract the first slip of contacts that slide much faster at the time t (s).
+        """Subtract the first slips together, as they were given, when all contacts slide much faster.
 
-        Friction keeps this excess of speed in the direction of the slip, so subtract it in this direction.
+        Friction keeps these excesses of speed in the directions of the slips, so subtract them in these directions.
         """
-        for contact, first in list(self._first_slips.items()):
-            motion = contact.motion(self._mbs)
-            if contact.free_to_slide and motion.potential < GROWN * first:
-                continue
-            del self._first_slips[contact]
-            if contact.free_to_slide:
-                self._dynamics.evaluate(t)
-                slips = Slips(self._mbs, self._dynamics, [contact])
-                rows, to_forces, _ = independent_rows(slips.to_rates, [])
-                slips.give(rows, to_forces, (1.0 - first / motion.potential) * slips.now[rows])
+        self._first_slips = {one: first for one, first in self._first_slips.items() if one.free_to_slide}
+        if not self._first_slips:
+            return
+        sliding, firsts = list(self._first_slips), np.array(list(self._first_slips.values()))
+        sizes = np.array([contact.motion(self._mbs).potential for contact in sliding])
+        if (sizes >= GROWN * firsts).all():
+            self._dynamics.evaluate(t)
+            slips = Slips(self._mbs, self._dynamics, sliding)
+            rows, to_forces, _ = independent_rows(slips.to_rates, [])
+            slips.give(rows, to_forces, ((1.0 - firsts / sizes)[slips.sets.owner] * slips.now)[rows])
+            self._first_slips.clear()
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
@@ -399,7 +403,8 @@ class ModeChoice:
             self._slips_at(t)
             self._iterate(t, self._present)
             left = self._left(t)
-            if least < -1.0 and left.min() > 0.0:
+            change = self._data.GetAECoordinates() - before[0]
+            if least < -1.0 and left.min() > 0.0 and np.abs(change).max() > SETTLED * self._limits.max():
                 raise SimulationError(
                     f"a locked contact held {1.0 - least:.3g} times its capacity in a step, but not at its end t = "
                     f"{t:.9g} s: a speed that a constraint prescribes jumps there; pass this time in breaks"

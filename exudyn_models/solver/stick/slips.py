@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from exudyn_models.solver.rows.active_set import unloaded
 from exudyn_models.solver.stick.complementarity import DEPENDENT, Sets
 from exudyn_models.solver.stick.dynamics import Dynamics, mobilities
 from exudyn_models.solver.stick.sticking_contacts import STILL, PlanarContact, StickingContact
@@ -119,6 +120,13 @@ class Slips:
             return np.empty(0), accelerations, constraints
         holding = -to_forces @ self.rates(accelerations)[held]
         return np.asarray(holding, float), *self._dynamics.solution(forces + holding @ self.rows[held])
+
+    def collide(self) -> None:
+        """Give one-way clutches, the only contacts, slips >= 0 by an impact."""
+        if self.now.min() < 0.0:
+            limits = np.tile([0.0, np.inf], (len(self.now), 1))
+            impulses, _ = unloaded(len(self.now)).forces(self.to_rates, self.now, limits)
+            self._data.SetODE2Coordinates_t(self._velocities + self._to_velocities @ impulses)
 
     def give(self, rows: Sequence[int], to_forces: FloatArray, wanted: FloatArray) -> None:
         """Give rows the slips ``wanted`` at the least kinetic energy; ``to_forces`` is as in ``hold``."""

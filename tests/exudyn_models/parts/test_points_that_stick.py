@@ -176,6 +176,29 @@ def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_to
     assert [*force[:2], float(moment)] == pytest.approx(largest, rel=1e-4)
 
 
+def test_points_that_begin_to_slide_together_keep_their_directions():
+    """Nearly regularised friction in SciPy has the motion of a body that loads on its centre set in motion."""
+    start, rates = np.array([1.4985, 1.2097, -0.0414]), np.array([19.345, 11.409, 1.6084])
+    mbs, inertia = new_model(), 0.02
+    node = planar_body(mbs, MASS, inertia, REST, REST)
+    add_ring_friction(mbs, None, node, normal_load=10.0, **LAW)
+    for load, growth in ((start, lambda t: 1.0), (rates, lambda t: t)):
+        push(mbs, node, load, growth)
+
+    def accelerations(t, motion):
+        load = start + rates * t
+        for x, y, share in FEET:
+            arm = complex(x, y) * np.exp(1j * motion[2])
+            slip = complex(*motion[3:5]) + 1j * motion[5] * arm
+            force = -FRICTION * share * slip / np.hypot(abs(slip), 1e-9)
+            load = load + np.array([force.real, force.imag, (arm.conjugate() * force).imag])
+        return [*motion[3:], *load / [MASS, MASS, inertia]]
+
+    exact = solve_ivp(accelerations, (0.0, 0.01), np.zeros(6), "Radau", rtol=1e-8, atol=1e-12).y[3:, -1]
+    assert run(mbs, 0.01, 20) == []
+    assert mbs.systemData.GetODE2Coordinates_t() == pytest.approx(exact, abs=1e-6)
+
+
 def test_a_deleted_contact_releases_all_points():
     mbs, node, contact = body_on_feet()
     push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
@@ -210,3 +233,17 @@ def test_points_with_a_load_of_radius_or_with_one_that_is_held_are_refused():
         contact.change(friction_coefficient=lambda radius: 0.3, normal_load=20.0)
     run(mbs, 1e-6, 1)
     assert float(mbs.GetSensorValues(moment)) == before
+
+
+def test_all_points_of_a_body_begin_to_slide_from_rest_without_ever_smaller_steps():
+    """Its points lose their first slips together, because the loss at one of them changes the slips of the others."""
+    for seed in range(12, 22):
+        random = np.random.default_rng(seed)
+        load = [*random.normal(size=2), 0.03 * random.normal()]
+        speeds = []
+        for step in (1e-3, 5e-4):
+            mbs, node, _ = body_on_feet()
+            push(mbs, node, load, lambda t: 6.0 + t)
+            solve_dynamic(mbs, settings_of(0.02, round(0.02 / step)), SOLVER)
+            speeds.append(mbs.systemData.GetODE2Coordinates_t())
+        assert speeds[0] == pytest.approx(speeds[1], abs=1e-5)

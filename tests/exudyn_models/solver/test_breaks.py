@@ -137,6 +137,10 @@ def test_a_controller_releases_a_locked_clutch_at_its_sample():
 def test_invalid_samples_are_refused():
     mbs = new_model()
     rotor(mbs, 1.0, 0.0)
-    for sampled, message in (({0.0: lambda mbs, t: None}, "sampled = 0"), ({0.1: 3}, r"sampled\[0.1\]")):
+    for sampled, message in (
+        ({0.0: lambda mbs, t: None}, "sampled = 0"),
+        ({1e-9: lambda mbs, t: None}, r"sampled = 1e-09 s: the run would take 1e\+08 samples"),
+        ({0.1: 3}, r"sampled\[0.1\]"),
+    ):
         with pytest.raises(ValueError, match=message):
             solve_dynamic(mbs, settings_of(0.1, 10), SOLVERS.RK44, sampled=sampled)

@@ -17,6 +17,7 @@ from free_bodies import (
     items,
     new_model,
     planar_body,
+    rotations,
     rotor,
 )
 
@@ -176,6 +177,53 @@ def test_a_pendulum_has_the_stiffness_of_its_weight_until_its_dry_pivot_locks():
     frequency = math.sqrt(2.0 * 9.81 * 0.4 / (0.1 + 2.0 * 0.4**2))
     assert pendulum(False).eigenvalues.imag == pytest.approx([-frequency, frequency], rel=1e-8)
     assert len(pendulum(True).eigenvalues) == 0
+
+
+@pytest.mark.parametrize("kind", ["RotationRxyz", "RotationRotationVector", "RotationEulerParameters"])
+def test_a_pendulum_in_motion_keeps_its_frequency(kind):
+    """The linearised equation of J·φ̈ = −m·g·l·sin φ does not contain φ̇."""
+    mbs, angle, spin = new_model(), 0.5, 2.0
+    place = 0.4 * np.array([math.sin(angle), -math.cos(angle), 0.0])
+    velocity = [-spin * place[1], spin * place[0], 0.0]
+    axes = rotations.RotationMatrixZ(angle)
+    rod = ball(mbs, getattr(exu.NodeType, kind), 2.0, 0.1, place, velocity, [0.0, 0.0, spin], axes)
+    centre = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=rod))
+    mbs.AddLoad(items.Force(markerNumber=centre, loadVector=[0.0, -2.0 * 9.81, 0.0]))
+    ends = (mbs.AddObject(items.ObjectGround()), 0.0), (rod, 0.4)
+    pins = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=one, localPosition=[0.0, y, 0.0])) for one, y in ends
+    ]
+    mbs.AddObject(items.GenericJoint(markerNumbers=pins, constrainedAxes=[1, 1, 1, 1, 1, 0]))
+    frequency = math.sqrt(2.0 * 9.81 * 0.4 * math.cos(angle) / (0.1 + 2.0 * 0.4**2))
+    assert linearise(mbs).eigenvalues.imag == pytest.approx([-frequency, frequency], rel=1e-8)
+
+
+def test_a_slider_in_a_rotating_slot_softens():
+    """In the slot of a shaft with a prescribed speed Ω, m·r̈ + d·ṙ + (k − m·Ω²)·r is constant."""
+    mbs, speed, mass, stiffness, damping = new_model(), 8.0, 1.5, 300.0, 4.0
+    hub = planar_body(mbs, 1.0, 0.1, [0.0] * 3, [0.0, 0.0, speed])
+    planar_body(mbs, mass, 0.01, [0.2, 0.0, 0.0], [0.0, 0.2 * speed, speed])
+    for place in (0, 1, 2):
+        mbs.AddObject(
+            items.ObjectConnectorCoordinate(
+                markerNumbers=[coordinate(mbs, None), coordinate(mbs, hub, place)],
+                velocityLevel=place == 2,
+                offsetUserFunction_t=(lambda mbs, t, item, offset: speed) if place == 2 else 0,
+            )
+        )
+    ends = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=exu.ObjectIndex(one))) for one in (0, 1)]
+    mbs.AddObject(items.GenericJoint(markerNumbers=ends, constrainedAxes=[0, 1, 0, 0, 0, 1]))
+    radial = np.diag([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    mbs.AddObject(
+        items.RigidBodySpringDamper(
+            markerNumbers=ends,
+            stiffness=stiffness * radial,
+            damping=damping * radial,
+            offset=[0.2 - mass * speed**2 * 0.2 / stiffness, *[0.0] * 5],
+        )
+    )
+    expected = np.roots([mass, damping, stiffness - mass * speed**2])
+    assert np.sort_complex(linearise(mbs).eigenvalues) == pytest.approx(np.sort_complex(expected), rel=1e-8)
 
 
 def test_a_disc_that_sticks_in_the_plane_moves_with_its_carrier():

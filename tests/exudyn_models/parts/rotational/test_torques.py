@@ -141,6 +141,13 @@ def test_an_engine_drives_a_car_whose_tyre_slips_and_the_car_stays_on_a_slope(so
     assert np.max(np.abs(balance().residual)) < 2e-5 * balance().turnover
 
 
+def test_a_torque_that_is_not_finite_is_named():
+    mbs = new_model()
+    add_torque(mbs, rotor(mbs, 1.0, 2.0), lambda time, angle, speed: math.nan)
+    with pytest.raises(exu.ExudynError, match=r"torque\(0, 0, 2\) = nan: it must be finite"):
+        changes_of(mbs, 0.1, 1e-2)
+
+
 def test_a_shift_sequence_hands_over_between_elements():
     shifts = shift_sequence(
         {"brake": 10.0, "clutch": 5.0, "both": 2.0},
@@ -163,6 +170,10 @@ def test_wrong_tables_rotors_and_shifts_are_refused():
     one, other = rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0)
     with pytest.raises(ValueError, match=r"table = .*: it must have at least two rows of 2 or 3 numbers"):
         torque_table([[0.0, 1.0]])
+    with pytest.raises(ValueError, match="throttle = 2: it must be from 0 to 1"):
+        torque_table([[0.0, 1.0], [1.0, 1.0]], 2.0)
+    with pytest.raises(ValueError, match="impeller = turbine = None: at least one must be a rotor"):
+        add_torque_converter(mbs, None, None, table=[[0.0, 1.0, 1.0], [1.0, 1.0, 1.0]])
     with pytest.raises(ValueError, match="its first column must increase"):
         add_torque_converter(mbs, one, other, table=[[0.0, 1.0, 1.0], [0.0, 1.0, 1.0]])
     with pytest.raises(ValueError, match="speed ratios must be from 0 to 1"):
@@ -172,7 +183,7 @@ def test_wrong_tables_rotors_and_shifts_are_refused():
     for more, words in (
         ({"drag_area": -1.0, "air_density": -1.0}, "drag_area = -1 m²"),
         ({"mass": 1e308}, "mass = 1e\\+308 kg: its size must be between"),
-        ({"rolling": -0.1}, r"rolling = -0\.1 : it must be >= 0"),
+        ({"rolling": -0.1}, r"rolling = -0\.1: it must be >= 0"),
         ({"slope": 2.0}, "slope = 2 rad: it must lie between"),
     ):
         with pytest.raises(ValueError, match=words):

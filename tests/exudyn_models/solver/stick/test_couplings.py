@@ -176,6 +176,34 @@ def test_a_one_way_clutch_that_starts_in_its_locked_direction_equalises_the_spee
     assert (rate_of(mbs, driver), rate_of(mbs, driven)) == pytest.approx((2.0, 2.0), rel=1e-12)
 
 
+def test_an_impact_of_one_way_clutches_is_free_of_friction_and_of_tension():
+    """A brake at rest takes no share of the impact, and the clutch on the ground overruns.
+
+    Rotors of 1, 1 and 2 kg m² with 3, 0 and 0 rad/s then turn with 3/4 rad/s.
+    """
+    mbs = new_model()
+    line = [rotor(mbs, inertia, speed) for inertia, speed in ((1.0, 3.0), (1.0, 0.0), (2.0, 0.0))]
+    for pair in (line[:2], line[1:], [None, line[2]]):
+        add_one_way_clutch(mbs, *pair)
+    add_ring_friction(mbs, None, line[2], contact_radius=0.1, friction_coefficient=0.3, normal_load=10.0)
+    changes_of(mbs, 1e-3, STEP)
+    speeds = [rate_of(mbs, one) for one in line]
+    assert speeds == pytest.approx([0.75 - 0.3e-3 / 4.0] * 3, rel=1e-12)
+
+
+def test_one_way_clutches_that_share_a_load_after_an_impact_release_as_one():
+    """Both rotors have 4/3 rad/s after the impact, and separate when 5·sin(9·t)/1 = −0.3/2 rad/s²."""
+    mbs = new_model()
+    first, second = rotor(mbs, 1.0, 2.0), rotor(mbs, 2.0, 1.0)
+    drive(mbs, first, lambda t: 5.0 * math.sin(9.0 * t))
+    drive(mbs, second, -0.3)
+    for _ in range(2):
+        add_one_way_clutch(mbs, first, second)
+    release = (math.pi + math.asin(0.03)) / 9.0
+    changes = changes_of(mbs, 0.4, 1e-3)
+    assert [(time, after) for time, _, _, after in changes] == [(pytest.approx(release, abs=1e-6), 1)] * 2
+
+
 def test_a_locked_one_way_clutch_carries_a_rotor_along_with_a_locked_friction_clutch():
     mbs = new_model()
     rotors = [rotor(mbs, inertia, 0.0) for inertia in (1.0, 0.5, 1.5)]
