@@ -87,11 +87,15 @@ class PlanarStick(AxialStick):
         """Number of constraints: one for each direction, then one for all directions of a contact in the plane."""
         return self.most_locks + (self.most_locks > 1)
 
+    @cached_property
+    def _together(self) -> tuple[Callable[..., Any], Callable[..., Any]]:
+        return constraint_and_gradients(self.kinds, self.factors, self.mean_radius)
+
     def lock_options(self, lock: int) -> dict[str, Any]:
         """Return the number of equations of a constraint, as Exudyn's scaling, and its user functions."""
-        count, functions = 1, (partial(self.constraint, lock), partial(self.constraint_jacobian, lock))
-        if lock == self.most_locks:
-            count, functions = lock, constraint_and_gradients(self.kinds, self.factors, self.mean_radius)
+        count, functions = lock, self._together
+        if lock < self.most_locks:
+            count, functions = 1, (partial(self.constraint, lock), partial(self.constraint_jacobian, lock))
         names = "constraintUserFunction", "jacobianUserFunction"
         return {"scalingMarker0": np.zeros((count, 1)), **dict(zip(names, functions, strict=True))}
 
@@ -102,7 +106,9 @@ class PlanarStick(AxialStick):
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradients of the locked slips, shape (k, n)."""
-        return np.asarray(self.to_locked(coordinates) @ self.slip_map(coordinates))
+        values = coordinates.tolist()
+        found: FloatArray = self._together[1](None, 0.0, 0, values, values, True)
+        return found[2:] / self.mean_radius if self.on_axis else found
 
     def to_locked(self, coordinates: FloatArray) -> FloatArray:
         """Return the map from the slip to the slips that locks hold, shape (k, 3)."""

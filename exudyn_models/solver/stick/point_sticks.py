@@ -48,6 +48,10 @@ class PointsOnAxis(PlanarStick):
         force = self._force_per_moment * cmath.exp(1j * angle)
         return np.array([force.real, force.imag, 1.0])
 
+    def rows(self, coordinates: FloatArray) -> FloatArray:
+        """Return the gradient of the locked slip, shape (1, n)."""
+        return np.asarray(self.to_locked(coordinates) @ self.slip_map(coordinates))
+
     def to_locked(self, coordinates: FloatArray) -> FloatArray:
         """Return the map from (u, S) to f·u + S, shape (1, 3)."""
         cosine, sine = slip_and_place_of_nodes(self.kinds, coordinates)[2]

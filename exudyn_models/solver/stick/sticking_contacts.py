@@ -297,10 +297,7 @@ class PlanarContact(StickingContact):
         return motion
 
     def margin(self, mbs: Any) -> float:
-        """Return 1, or a number that falls below zero when the slip of a held contact begins or vanishes.
-
-        ``sliding_steps`` finds the end of sliding.
-        """
+        """Return 1, or a number that falls below zero when the slip of a held contact begins or vanishes."""
         if self.stick.slides:
             return 1.0 if self.free_to_slide else self.slid(mbs).potential / STILL - 0.5
         if self.mode == Mode.OPEN or self.planar.allowed.shape[1] == self.planar.most_locks:
@@ -314,9 +311,10 @@ class PlanarContact(StickingContact):
     def sliding_mode(self, slip: FloatArray) -> Mode:
         """Return the mode of a contact with a slip."""
         x, y, *spin = slip.tolist()
-        sideways = math.hypot(x, y)
         rim = spin[0] * (self.planar.mean_radius or 1.0) if spin else 0.0
-        return Mode.BACKWARD if rim < -NEGLIGIBLE * sideways else Mode.FORWARD  # spin may be a rounding error
+        return (
+            Mode.BACKWARD if rim < -NEGLIGIBLE * math.hypot(x, y) else Mode.FORWARD
+        )  # spin may be a rounding error
 
 
 def sticking_contacts(mbs: Any, start: float, end: float) -> list[StickingContact]:
