@@ -1,8 +1,6 @@
 """Modes that let all contacts of a model obey Coulomb's law at one time of a run, and the margins of these modes.
 
-All contacts solve one problem together (``complementarity``). A contact in the plane begins to slide with a slip that
-its acceleration reaches within a millionth of a step, or that Newton's method can resolve. ``take_back`` removes this
-slip when the contact slides faster.
+All contacts solve one problem together (``complementarity``).
 """
 
 import math
@@ -17,11 +15,11 @@ from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.active_set import LoadedRows
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, OneWayLaw
 from exudyn_models.solver.rows.moment_loads import Loads
-from exudyn_models.solver.stick.complementarity import independent_rows, linked, rest_or_slip
+from exudyn_models.solver.stick.complementarity import independent_rows, rest_or_slip
 from exudyn_models.solver.stick.dynamics import Dynamics
+from exudyn_models.solver.stick.first_slips import FirstSlips
 from exudyn_models.solver.stick.resting import NEAR, Line, Resting
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
-from exudyn_models.solver.stick.slip_motion import RESOLVED
 from exudyn_models.solver.stick.slips import Slips
 from exudyn_models.solver.stick.sticking_contacts import LEAST, PlanarContact, SpringFlanks, StickingContact
 from reference_model.systems import FloatArray
@@ -38,9 +36,6 @@ SHRUNK = 1e-6
 
 AHEAD = 1e-5
 """Share of a step to look ahead for the flank of a spring that is pressed."""
-
-GROWN = 10.0
-"""Least slip for ``take_back``, relative to the first slip."""
 
 MOST_CHANGES = 100
 """Largest number of changes of mode at one time."""
@@ -73,7 +68,7 @@ class ModeChoice:
         self._locks = np.unique(self._places)
         self._ended, self._overloaded = set[StickingContact](), set[StickingContact]()
         self._slipped, self._held = set[StickingContact](), set[int]()
-        self._first_slips: dict[PlanarContact, float] = {}
+        self.first_slips = FirstSlips(mbs, self._dynamics, slides, step)
         self._line: Line | None = None
         self._dynamics.evaluate(t, self._locks)
         self._slips = Slips(mbs, self._dynamics, contacts)
@@ -102,23 +97,6 @@ class ModeChoice:
     def groups(self) -> list[list[StickingContact]]:
         """Contacts at rest that share a load."""
         return [group.contacts for group in self._resting.groups]
-
-    def take_back(self, t: float) -> None:
-        """Subtract the first slips together, as they were given, when all contacts slide much faster.
-
-        Friction keeps these excesses of speed in the directions of the slips, so subtract them in these directions.
-        """
-        self._first_slips = {one: first for one, first in self._first_slips.items() if one.free_to_slide}
-        if not self._first_slips:
-            return
-        sliding, firsts = list(self._first_slips), np.array(list(self._first_slips.values()))
-        sizes = np.array([contact.motion(self._mbs).potential for contact in sliding])
-        if (sizes >= GROWN * firsts).all():
-            self._dynamics.evaluate(t)
-            slips = Slips(self._mbs, self._dynamics, sliding)
-            rows, to_forces, _ = independent_rows(slips.to_rates, [])
-            slips.give(rows, to_forces, ((1.0 - firsts / sizes)[slips.sets.owner] * slips.now)[rows])
-            self._first_slips.clear()
 
     def end(self, ended: Iterable[StickingContact]) -> None:
         """Note contacts whose slip vanishes, or whose load reaches their capacity, until they have settled."""
@@ -246,7 +224,7 @@ class ModeChoice:
             elif found[first] * slips.now[first] < 0.0:  # a rounding error
                 wanted[first] = 0.0
             contact.enter(self._mbs, contact.sliding_mode(found[blocks[i]]))
-        wanted |= self._first_slips_of(begun, slips, found, bounds)
+        wanted |= self.first_slips.of(begun, slips, found, bounds)
         self._resting.divide(
             contacts, slips, resting, self._places, self._resting.rows, self._to_loads(slips)
         )
@@ -332,29 +310,6 @@ class ModeChoice:
             sliding,
         )
         return found
-
-    def _first_slips_of(
-        self, begun: Sequence[int], slips: Slips, found: FloatArray, bounds: FloatArray
-    ) -> dict[int, float]:
-        """Return the slips of the rows of contacts in the plane that begin to slide, in proportion if linked."""
-        if not begun:
-            return {}
-        sizes, blocks = slips.sets.sizes(found), slips.sets.blocks
-        shortest = RESOLVED * self._step
-        speeds = 2.0 * np.maximum(shortest * bounds, RESOLVED * slips.terms())
-        links = [[slips.to_rates[blocks[i], blocks[j]].any() for j in begun] for i in begun]
-        count, of_group = linked(np.array(links, float))
-        wanted: dict[int, float] = {}
-        for number in range(count):
-            group = [begun[k] for k in np.flatnonzero(of_group == number).tolist()]
-            time = max(speeds[i] / sizes[i] for i in group)
-            for i in group:
-                contact = self._contacts[i]
-                assert isinstance(contact, PlanarContact)
-                self._first_slips[contact] = float(time * sizes[i])
-                self._slides.begin(max(shortest, float(speeds[i] / bounds[i])))
-                wanted.update((row, float(time * found[row])) for row in range(len(found))[blocks[i]])
-        return wanted
 
     def hold(self, t: float) -> bool:
         """Return whether all modes clearly go on at the present state; if False, ``margins`` decides."""

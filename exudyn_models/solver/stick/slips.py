@@ -26,7 +26,7 @@ class Slips:
     """
 
     def __init__(self, mbs: Any, dynamics: Dynamics, contacts: Sequence[StickingContact]) -> None:
-        self._data, self._dynamics, self._contacts = mbs.systemData, dynamics, contacts
+        self._data, self._dynamics, self.contacts = mbs.systemData, dynamics, contacts
         self._constant, self._inverse = all(len(one.stick.weights) for one in contacts), dynamics.inverse
         state = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
         size = len(state[0])
@@ -63,13 +63,13 @@ class Slips:
     def at_present(self, mbs: Any) -> "Slips":
         """Return the slips at the present state of the same ``dynamics``."""
         if not self._constant or self._inverse is not self._dynamics.inverse:
-            return Slips(mbs, self._dynamics, self._contacts)
+            return Slips(mbs, self._dynamics, self.contacts)
         self._read()
         return self
 
     def allow(self) -> None:
         """Let contacts in the plane know which slips constraints allow."""
-        for contact, rows in zip(self._contacts, self.sets.blocks, strict=True):
+        for contact, rows in zip(self.contacts, self.sets.blocks, strict=True):
             if isinstance(contact, PlanarContact):
                 contact.allow(self.to_rates[rows, rows], self._lengths[rows])
 

@@ -215,7 +215,7 @@ class _Run:
         longest, recovery = math.inf, self._options.adaptiveStepRecoverySteps
         while not self._ends:
             start = self._reached
-            self._modes.take_back(start)
+            self._modes.first_slips.take_back(start)
             done = math.floor((start - self._start) / self._step + ON_GRID) + 1
             end = self._end if done >= self._steps else self._start + done * self._step
             end = min(end, start + longest, start + self._slides.longest)
