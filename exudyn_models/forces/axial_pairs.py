@@ -20,7 +20,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
+from exudyn_models.forces.friction_laws import NONE_HELD, mean_radius
 from exudyn_models.forces.load_and_coefficient import AT_REST, LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
@@ -42,8 +42,11 @@ def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
 
 def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, Any]:
     """Return force and Jacobian as user functions for Exudyn."""
-    grounded = kinds[0] == GROUND
-    force = _varying(grounded, factors) if factors.contact is None else _constant(grounded, factors.contact)
+    grounded, resistance = kinds[0] == GROUND, _resistance(factors)
+
+    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+        moment = resistance(t, q_t[0] if grounded else q_t[1] - q_t[0])
+        return [-moment] if grounded else [moment, -moment]
 
     def jacobian(
         mbs: Any,
@@ -72,8 +75,8 @@ OF_TIME = (
 
 def resistance_on_axis(factors: LoadAndCoefficient) -> Callable[..., float]:
     """Return the moment against the spin, as a user function of ``ObjectConnectorCoordinateSpringDamper``."""
-    radius, epsilon = mean_radius(factors.geometry), factors.geometry[3]
     if factors.of_time is not None:
+        radius, epsilon = mean_radius(factors.geometry), factors.geometry[3]
         constant, law = factors.of_time
         source = OF_TIME.format(limit=radius * constant, fastest=epsilon / radius)
         names = {
@@ -81,15 +84,8 @@ def resistance_on_axis(factors: LoadAndCoefficient) -> Callable[..., float]:
             "checked": lambda factor, t: law.checked(factor, t, math.nan, math.nan, math.nan),
         }
         return cast(Callable[..., float], eval(source, names))
-
-    def resistance(
-        mbs: Any, t: float, item: int, twist: float, spin: float, stiffness: Any, damping: Any, offset: Any
-    ) -> float:
-        speed = radius * abs(spin)
-        friction = factors.friction_force(t, 0.0, speed, spin)
-        return math.copysign(radius * friction * min(1.0, speed / epsilon), spin)
-
-    return resistance
+    resistance = _resistance(factors)
+    return lambda mbs, t, item, twist, spin, *parameters: resistance(t, spin)
 
 
 def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, float] | None:
@@ -103,34 +99,16 @@ def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, floa
     return (factors.contact[2] * radius, factors.contact[3] / radius) if radius > 0.0 else None
 
 
-def _constant(grounded: bool, contact: Contact) -> Any:
-    radius = mean_radius(contact)
-    creep = radius / contact[3]
-    limit = contact[2] * radius
-
-    def on_ground(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        share = creep * q_t[0]
-        return [-limit if share > 1.0 else limit if share < -1.0 else -limit * share]
-
-    def on_rotor(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        share = creep * (q_t[1] - q_t[0])
-        of_disc = -limit if share > 1.0 else limit if share < -1.0 else -limit * share
-        return [-of_disc, of_disc]
-
-    return on_ground if grounded else on_rotor
-
-
-def _varying(grounded: bool, factors: LoadAndCoefficient) -> Any:
+def _resistance(factors: LoadAndCoefficient) -> Callable[[float, float], float]:
+    """Return the moment against the spin as a function of time and spin."""
     radius, epsilon = mean_radius(factors.geometry), factors.geometry[3]
 
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        spin = q_t[0] if grounded else q_t[1] - q_t[0]
+    def resistance(t: float, spin: float) -> float:
         speed = radius * abs(spin)
-        limit = radius * factors.friction_force(t, 0.0, speed, spin)
-        of_disc = -math.copysign(limit * min(1.0, speed / epsilon), spin)
-        return [of_disc] if grounded else [-of_disc, of_disc]
+        friction = factors.friction_force(t, 0.0, speed, spin)
+        return math.copysign(radius * friction * min(1.0, speed / epsilon), spin)
 
-    return force
+    return resistance
 
 
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:
