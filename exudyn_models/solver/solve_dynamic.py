@@ -75,7 +75,8 @@ def solve_dynamic(
     breaks : sequence of float
         Increasing times in s within the run when a load, a coefficient or another function jumps.
     sampled : dict of float and callable
-        Controllers by their period in s: functions of ``mbs`` and the time in s, called once at each sample.
+        Controllers by their period in s, from the start of the run: functions of ``mbs`` and the time in s, called
+        once at each sample.
 
     Returns
     -------
