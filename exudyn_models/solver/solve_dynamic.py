@@ -22,6 +22,7 @@ from types import MappingProxyType
 from typing import Any
 
 import exudyn as exu
+import numpy as np
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.breaks import (
@@ -40,6 +41,7 @@ from exudyn_models.solver.linear.matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
 from exudyn_models.solver.solver_run import NOT_FINITE, advice, after_every_step, raise_interrupt
 from exudyn_models.solver.starting_rates import starting_rates
+from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.sticking_contacts import (
     ModeChange,
     StickingContact,
@@ -76,7 +78,8 @@ def solve_dynamic(
     breaks : sequence of float
         Increasing times in s within the run when a load, a coefficient or another function jumps.
     sampled : dict of float and callable
-        Controllers by their period in s: functions of ``mbs`` and the time in s, called once at each sample.
+        Controllers by their period in s, from the start of the run: functions of ``mbs`` and the time in s, called
+        once at each sample.
 
     Returns
     -------
@@ -213,21 +216,26 @@ def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> 
     ):  # of a check, a warning made an error by a filter
         raise error.__cause__ from None
     if isinstance(error, (exu.SolverError, exu.InternalError)):
-        if massless := _singular(mbs, time == 0.0):
-            raise SimulationError(
-                f"Exudyn's {solver} failed 0 s after the start: {massless}; add mass or inertia"
-            ) from error
+        if singular := _singular(mbs, time == 0.0):
+            raise SimulationError(f"Exudyn's {solver} failed 0 s after the start: {singular}") from error
         what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
         raise SimulationError(advice(solver, time, what)) from error
 
 
 def _singular(mbs: Any, at_start: bool) -> str:
+    """Return a message about massless coordinates, or constraints that depend on each other, or ""."""
     if not at_start:
         return ""
     try:
-        return singular_mass(mbs)
+        if massless := singular_mass(mbs):
+            return f"{massless}; add mass or inertia"
+        dynamics = Dynamics(mbs, 0.0, 1.0)
+        dynamics.evaluate(0.0)
     except exu.ExudynError:  # the run's own error is more useful
         return ""
+    rows = dynamics.gradients[dynamics.gradients.any(axis=1)]
+    surplus = len(rows) and len(rows) - np.linalg.matrix_rank(rows / np.linalg.norm(rows, axis=1)[:, None])
+    return f"{surplus} of {len(rows)} constraints depend on the others; remove them" if surplus else ""
 
 
 def _check_constraints(mbs: Any, solver: Any) -> None:

@@ -18,6 +18,7 @@ from exudyn_models import (
     add_planetary,
     add_ring_friction,
 )
+from reference_model.trajectory import SimulationError
 
 IMPLICIT = [exu.DynamicSolverType.TrapezoidalIndex2, exu.DynamicSolverType.GeneralizedAlpha]
 SEEDS = (2, 5, 7, 10, 13, 17, 22, 33)
@@ -239,6 +240,16 @@ def test_invalid_gears_are_refused(arguments, message):
     mbs = new_model()
     with pytest.raises(ValueError, match=message):
         add_gear(mbs, rotor(mbs, 1.0, 0.0), rotor(mbs, 1.0, 0.0), **arguments)
+
+
+@pytest.mark.parametrize("efficiency", [1.0, 0.9])
+def test_gears_that_repeat_a_constraint_are_named(efficiency):
+    mbs = new_model()
+    rotors = [rotor(mbs, 1.0, 0.0) for _ in range(2)]
+    for _ in range(2):
+        add_gear(mbs, *rotors, ratio=2.0, efficiency=efficiency)
+    with pytest.raises(SimulationError, match="1 of 2 constraints depend on the others; remove them"):
+        changes_of(mbs, 0.1, STEP)
 
 
 @pytest.mark.parametrize("solver", IMPLICIT)
