@@ -59,12 +59,12 @@ class FirstSlips:
 
         Friction keeps these excesses of speed in the directions of the slips, so subtract them in these directions.
         """
-        self._sizes = {contact: first for contact, first in self._sizes.items() if contact.free_to_slide}
         if not self._sizes:
             return
+        self._sizes = {contact: first for contact, first in self._sizes.items() if contact.free_to_slide}
         sliding, firsts = list(self._sizes), np.array(list(self._sizes.values()))
         sizes = np.array([contact.motion(self._mbs).potential for contact in sliding])
-        if (sizes >= GROWN * firsts).all():
+        if sliding and (sizes >= GROWN * firsts).all():
             self._dynamics.evaluate(t)
             slips = Slips(self._mbs, self._dynamics, sliding)
             rows, to_forces, _ = independent_rows(slips.to_rates, [])

@@ -328,8 +328,10 @@ class ModeChoice:
         They are the slip in the direction of sliding (m/s or rad/s), or the unused share of the capacity of contacts
         at rest. They change their sign where friction vanishes or begins.
         """
-        springs = [spring.margin(self._mbs) for spring in self._springs]
-        return np.append(self._margins_of_contacts(t), springs)
+        margins = self._margins_of_contacts(t)
+        return (
+            np.append(margins, [one.margin(self._mbs) for one in self._springs]) if self._springs else margins
+        )
 
     def _margins_of_contacts(self, t: float) -> FloatArray:
         slips = self._rows @ self._data.GetODE2Coordinates_t(CURRENT, False)
@@ -357,8 +359,9 @@ class ModeChoice:
             before = self._data.GetAECoordinates(), self._data.GetODE2Coordinates_tt()
             self._slips_at(t)
             self._iterate(t, self._present)
-            left = self._left(t)
             change = self._data.GetAECoordinates() - before[0]
+            if change.any():
+                left = self._left(t)
             if least < -1.0 and left.min() > 0.0 and np.abs(change).max() > SETTLED * self._limits.max():
                 raise SimulationError(
                     f"a locked contact held {1.0 - least:.3g} times its capacity in a step, but not at its end t = "
