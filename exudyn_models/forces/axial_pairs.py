@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
 from operator import mul
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -65,27 +65,27 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
     return force, jacobian
 
 
-OF_TIME = (
-    "lambda mbs, t, item, twist, spin, stiffness, damping, offset: "
-    "({limit} if spin > {fastest} else -{limit} if spin < -{fastest} else {limit} * (spin / {fastest})) * "
-    "(factor if (factor := function(t)).__class__ is float and 0.0 <= factor < 1e400 else checked(factor, t))"
-)
-"""Moment of friction that depends on time only; with literal numbers it is as fast as a function for one contact."""
-
-
 def resistance_on_axis(factors: LoadAndCoefficient) -> Callable[..., float]:
     """Return the moment against the spin, as a user function of ``ObjectConnectorCoordinateSpringDamper``."""
-    if factors.of_time is not None:
-        radius, epsilon = mean_radius(factors.geometry), factors.geometry[3]
-        constant, law = factors.of_time
-        source = OF_TIME.format(limit=radius * constant, fastest=epsilon / radius)
-        names = {
-            "function": law.function,
-            "checked": lambda factor, t: law.checked(factor, t, math.nan, math.nan, math.nan),
-        }
-        return cast(Callable[..., float], eval(source, names))
-    resistance = _resistance(factors)
-    return lambda mbs, t, item, twist, spin, *parameters: resistance(t, spin)
+    if factors.of_time is None:
+        resistance = _resistance(factors)
+        return lambda mbs, t, item, twist, spin, *parameters: resistance(t, spin)
+    constant, law = factors.of_time
+    radius, function = mean_radius(factors.geometry), law.function
+    limit, fastest, endless = radius * constant, factors.geometry[3] / radius, math.inf
+    least, backward = -limit, -fastest
+
+    def of_time(
+        mbs: Any, t: float, item: int, twist: float, spin: float, stiffness: Any, damping: Any, offset: Any
+    ) -> float:
+        factor = function(t)
+        if factor.__class__ is not float or not 0.0 <= factor < endless:
+            factor = law.checked(factor, t, math.nan, math.nan, math.nan)
+        if spin > fastest:
+            return limit * factor
+        return least * factor if spin < backward else limit * factor * (spin / fastest)
+
+    return of_time
 
 
 def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, float] | None:
