@@ -83,7 +83,7 @@ class _Run:
         outputs = settings.solution
         wanted = [kind for kind in (_Rows, _FileRows) if kind.chosen(outputs)]
         self._rows = [kind(outputs, self._start, self._step) for kind in wanted]
-        self._reached = self._target = self._start
+        self._reached = self._start
         self._size, self._ends = 0.0, False
         self._announced, self._settled = -math.inf, list[float]()
         self._ended_at_once = -math.inf
@@ -141,8 +141,6 @@ class _Run:
             begins = self._solver is None
             if begins:
                 self._solver = mbs.sys["dynamicSolver"]
-            elif self._target - t > ON_GRID * self._size:
-                self._size = 0.0  # Newton's method failed, and Exudyn chose a shorter step
             try:
                 self._aim(next(steps) if begins else steps.send(t))
                 goes_on = True
@@ -161,7 +159,7 @@ class _Run:
                 f"steps that resolve how contacts slide fell to zero at t = {self._reached:.9g} s: use smaller "
                 "steps, or give the contacts a regularisation"
             )
-        self._target, step = t, t - self._reached
+        step = t - self._reached
         if abs(step - self._size) > LOCATED * step:
             it, self._size = self._solver.it, step
             it.currentStepSize = it.maxStepSize = step
