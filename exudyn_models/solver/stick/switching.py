@@ -325,7 +325,8 @@ class _Run:
             if after != mode:
                 self.changes.append(ModeChange(self._reached, contact.item, mode, after, contact.stick.point))
         self._settled = [*self._settled[1 - MOST_CHANGES :], self._reached]
-        if len(self._settled) == MOST_CHANGES and self._reached - self._settled[0] < ON_GRID * self._step:
+        least = MOST_CHANGES * SOON * self._step  # a step to a change may end this late
+        if len(self._settled) == MOST_CHANGES and self._reached - self._settled[0] < least:
             raise SimulationError(
                 f"friction contacts changed their modes {MOST_CHANGES} times at t = {self._reached:.9g} s; "
                 "contacts between the same bodies may hold each other"
