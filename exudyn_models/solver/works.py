@@ -40,7 +40,7 @@ class _Powers:
         known = [(power, *source) for power, source in sources.items() if source is not None]
         rows = [(power, law, places) for power, law, places in known if isinstance(law, RowLaw)]
         slips = [(power, one, places) for power, one, places in known if isinstance(one, Contact)]
-        slips = slips if len(slips) > 1 else []  # a single contact costs less by itself
+        slips = slips if len(slips) > 1 else []  # one contact alone is faster without the compiled call
         together = [power for power, *_ in (*rows, *slips)]
         self._others = [power for power in sources if power not in together]
         distinct = together + self._others

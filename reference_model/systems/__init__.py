@@ -277,8 +277,7 @@ def checked_parameter(name: str, value: Any, unit: str, least: float) -> float:
     number, positive = finite_number(name, value), least > 0.0
     given = f"{name} = {number:g} {unit}".rstrip()
     if (positive and number <= 0.0) or number < 0.0 == least:
-        allowed = "> 0" if positive else ">= 0"
-        raise ValueError(f"{given}: it must be {allowed}")
+        raise ValueError(f"{given}: it must be {'> 0' if positive else '>= 0'}")
     if abs(number) > MOST or (positive and number < LEAST):
         allowed = f"between {LEAST:g} and" if positive else "at most"
         raise ValueError(f"{given}: its size must be {allowed} {MOST:g}")

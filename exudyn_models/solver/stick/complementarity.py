@@ -94,10 +94,10 @@ class Sets:
         return self._smooth_forces(to_rates, rates, limits)
 
     def _clearly_contain(self, forces: FloatArray, limits: FloatArray) -> bool:
-        """Return whether ``forces`` lie in intervals, or in the hull of forces and of moments alone."""
+        """Return whether ``forces`` lie in intervals, or in the hull that every limit surface contains."""
         own = [forces[rows].tolist() for rows in self.blocks]
         return all(
-            math.hypot(*force[:2]) + abs(sum(force[2:])) < forward if law else -forward < force[0] < backward
+            size_in_hull(force) < forward if law else -forward < force[0] < backward
             for law, force, (forward, backward) in zip(self.laws, own, limits.tolist(), strict=True)
         )
 
@@ -200,6 +200,12 @@ def rest_or_slip(
                 left, moves = found_left, found
                 break
     return np.asarray(left * moves[owner])
+
+
+def size_in_hull(forces: Sequence[float]) -> float:
+    """Return the friction (N) whose hull of forces alone and of moments alone the ``forces`` along locks reach."""
+    x, y, *rim = forces
+    return math.hypot(x, y) + abs(sum(rim))
 
 
 def linked(links: FloatArray) -> tuple[int, NDArray[Any]]:

@@ -168,7 +168,7 @@ class ModeChoice:
     def _slips_at(self, t: float) -> Slips:
         """Return the slips at the present state and the time t (s), without locks."""
         self._dynamics.evaluate(t, self._locks)
-        self._slips = self._slips.at_present(self._mbs)
+        self._slips = self._slips.at_present()
         return self._slips
 
     def _present(self) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -26,7 +26,7 @@ class Slips:
     """
 
     def __init__(self, mbs: Any, dynamics: Dynamics, contacts: Sequence[StickingContact]) -> None:
-        self._data, self._dynamics, self.contacts = mbs.systemData, dynamics, contacts
+        self._mbs, self._data, self._dynamics, self.contacts = mbs, mbs.systemData, dynamics, contacts
         self._constant, self._inverse = all(len(one.stick.weights) for one in contacts), dynamics.inverse
         state = self._data.GetODE2Coordinates(), self._data.GetODE2Coordinates_t()
         size = len(state[0])
@@ -60,10 +60,10 @@ class Slips:
         #: Slips (m/s or rad/s) before any change by ``give``.
         self.now = self.rows @ self._velocities
 
-    def at_present(self, mbs: Any) -> "Slips":
+    def at_present(self) -> "Slips":
         """Return the slips at the present state of the same ``dynamics``."""
         if not self._constant or self._inverse is not self._dynamics.inverse:
-            return Slips(mbs, self._dynamics, self.contacts)
+            return Slips(self._mbs, self._dynamics, self.contacts)
         self._read()
         return self
 

@@ -17,7 +17,7 @@ from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.rows.backlash import Backlash
 from exudyn_models.solver.rows.laws import LEAST as UNLOADED
 from exudyn_models.solver.rows.laws import GrowingLimit, MeshLaw, RotaryLaw
-from exudyn_models.solver.stick.complementarity import DEPENDENT, Law
+from exudyn_models.solver.stick.complementarity import DEPENDENT, Law, size_in_hull
 from exudyn_models.solver.stick.dynamics import Dynamics
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, TINY, PlanarStick
 from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
@@ -108,16 +108,19 @@ class StickingContact:
     def omit_user_functions(self, mbs: Any) -> None:
         """Let Exudyn evaluate constant moments itself."""
         if self.stick.constant_forces is not None:
-            for name in ("forceUserFunction", "jacobianUserFunction"):
-                mbs.SetObjectParameter(self.item, name, 0)
+            self._call(mbs, False)
 
     def restore_user_functions(self, mbs: Any) -> None:
-        """Undo ``omit_user_functions``."""
-        if self.stick.constant_forces is None:
-            return
-        mbs.SetObjectParameter(self.item, "forceVector", np.zeros(len(self.places)))
-        mbs.SetObjectParameter(self.item, "forceUserFunction", self.stick.force)
-        mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.stick.jacobian)
+        """Let Exudyn call the user functions of the connector."""
+        if self.stick.constant_forces is not None:
+            mbs.SetObjectParameter(self.item, "forceVector", np.zeros(len(self.places)))
+        self._call(mbs, True)
+
+    def _call(self, mbs: Any, calls: bool) -> None:
+        if calls != self.whole.called:
+            self.whole.called = calls
+            mbs.SetObjectParameter(self.item, "forceUserFunction", self.whole.force if calls else 0)
+            mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.whole.jacobian if calls else 0)
 
     def sliding_mode(self, slip: FloatArray) -> Mode:
         """Return the mode of a contact with a slip along its locks."""
@@ -157,13 +160,13 @@ class StickingContact:
         own = q[self.places], q_t[self.places], np.zeros(len(self.places))
         return self.stick.rows(self.stick.reference + own[0]), self.stick.bias(own)
 
-    def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _state(self, mbs: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return coordinates without reference values, and their derivatives."""
         data, places = mbs.systemData, self.places
         return (
-            data.GetODE2Coordinates(configuration, False)[places],
-            data.GetODE2Coordinates_t(configuration, False)[places],
-            data.GetODE2Coordinates_tt(configuration, False)[places],
+            data.GetODE2Coordinates(CURRENT, False)[places],
+            data.GetODE2Coordinates_t(CURRENT, False)[places],
+            data.GetODE2Coordinates_tt(CURRENT, False)[places],
         )
 
     def margin(self, mbs: Any) -> float:
@@ -221,16 +224,6 @@ class PlanarContact(StickingContact):
         super().enter(mbs, mode)
         self._call(mbs, any(part.slides for part in self.whole.active))
 
-    def restore_user_functions(self, mbs: Any) -> None:
-        """Let Exudyn call the user functions of the connector."""
-        self._call(mbs, True)
-
-    def _call(self, mbs: Any, calls: bool) -> None:
-        if calls != self.whole.called:
-            self.whole.called = calls
-            mbs.SetObjectParameter(self.item, "forceUserFunction", self.whole.force if calls else 0)
-            mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.whole.jacobian if calls else 0)
-
     @property
     def free_to_slide(self) -> bool:
         """True if the contact slides and nothing else determines its slip."""
@@ -275,13 +268,12 @@ class PlanarContact(StickingContact):
         return [share], [slip[:count] * (-scales / limits[0])]
 
     def share_bound(self, forces: FloatArray, limit: float) -> float:
-        """Return a bound of this share: the limit surface contains the hull of forces alone and moments alone."""
-        x, y, *rim = forces.tolist()
-        return float((math.hypot(x, y) + abs(sum(rim))) / limit)
+        """Return a bound of this share."""
+        return size_in_hull(forces.tolist()) / limit
 
-    def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
+    def motion(self, mbs: Any) -> SlipMotion:
         """Return the present motion, and store its radius for the capacity in stick."""
-        motion = self.planar.motion(*self._state(mbs, configuration))
+        motion = self.planar.motion(*self._state(mbs))
         self.planar.radius = motion.radius
         return motion
 

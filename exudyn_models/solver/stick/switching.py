@@ -307,11 +307,11 @@ class _Run:
             (max(shortest, 2.0 * RESOLVED * one.largest_term / one.rate_potential) for one in passing),
             default=0.0,
         )
-        end = self._reached + time
+        end = min(self._reached + time, self._end)
         for contact, _ in stopping:
             contact.planar.frozen = True
         try:
-            while self._reached < end:
+            while self._reached < end and not self._ends:
                 self._keep((yield end))
         finally:
             for contact, _ in stopping:

@@ -81,6 +81,19 @@ def test_a_block_stops_where_a_step_ends(solver, time):
     assert stop[0] == pytest.approx(time, abs=1e-12)
 
 
+@pytest.mark.parametrize("share", [1e-9, 3e-8, 1e-6, 1e-4])
+def test_a_run_ends_at_its_end_also_just_before_a_block_rests(share):
+    """The last step to rest passed the end of the run, which then never ended."""
+    mbs = new_model()
+    body = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [1.0, 0.5, 0.0])
+    add_ring_friction(mbs, None, body, contact_radius=0.0, friction_coefficient=1.0, normal_load=10.0 * MASS)
+    stops = math.hypot(1.0, 0.5) / 10.0
+    end = stops - share * 1e-3
+    assert all(time <= end for time, *_ in run(mbs, end, end / 112))
+    assert mbs.systemData.GetTime() == end
+    assert np.hypot(*velocities(mbs)[:2]) == pytest.approx(10.0 * share * 1e-3, abs=2e-8)
+
+
 def test_contacts_between_the_same_bodies_stop_hold_and_release_like_one_with_the_sum_of_their_loads():
     mbs, node, contacts = sliding_ring(1.0, 5.0, [10.0, 15.0, 25.0])
     push(mbs, node, 1, lambda t: 30.0 * max(0.0, t - 0.3))
